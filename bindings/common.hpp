@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file common.hpp
+/// What every binding needs: arrays without copies, ratios from Python numbers, clear errors.
+#pragma once
+
+#include <nanobind/nanobind.h>
+#include <nanobind/ndarray.h>
+#include <nanobind/stl/string.h>
+
+#include <cstddef>
+#include <memory>
+#include <mutex>
+#include <string>
+
+#include "strainwave/status.hpp"
+#include "strainwave/units.hpp"
+
+namespace strainwave::bindings {
+
+namespace nb = nanobind;
+
+/// Compiled capacities of the configurations that Python holds.
+inline constexpr std::size_t most_orders = 32;
+inline constexpr std::size_t most_gauges = 32;
+inline constexpr std::size_t most_harmonics = 16;
+
+template <class Number>
+using Vector = nb::ndarray<const Number, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
+template <class Number>
+using Matrix = nb::ndarray<const Number, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
+template <class Number>
+using VectorOut = nb::ndarray<nb::numpy, Number, nb::ndim<1>>;
+template <class Number>
+using MatrixOut = nb::ndarray<nb::numpy, Number, nb::ndim<2>>;
+
+/// A new array that is filled here and then belongs to Python.
+template <class Number>
+class NewVector {
+ public:
+  explicit NewVector(std::size_t size) : data_(new Number[size]()), size_(size) {}
+  [[nodiscard]] Number* data() { return data_.get(); }
+  [[nodiscard]] VectorOut<Number> give() {
+    Number* const data = data_.release();
+    const nb::capsule owner(data, [](void* p) noexcept { delete[] static_cast<Number*>(p); });
+    return VectorOut<Number>(data, {size_}, owner);
+  }
+
+ private:
+  std::unique_ptr<Number[]> data_;
+  std::size_t size_;
+};
+
+/// One call at a time: calls release the interpreter, and a filter's state belongs to one of them.
+class CallLock {
+ public:
+  CallLock() = default;
+  ~CallLock() = default;
+  CallLock(const CallLock& /*other*/) {}  // a copy is another object with calls of its own
+  CallLock& operator=(const CallLock&) = delete;
+  CallLock(CallLock&&) = delete;
+  CallLock& operator=(CallLock&&) = delete;
+  [[nodiscard]] std::unique_lock<std::mutex> hold() const { return std::unique_lock(mutex_); }
+
+ private:
+  mutable std::mutex mutex_;
+};
+
+/// Raises strainwave.errors.InputError.
+[[noreturn]] inline void raise_input_error(const std::string& message) {
+  const nb::object type = nb::module_::import_("strainwave.errors").attr("InputError");
+  PyErr_SetString(type.ptr(), message.c_str());
+  throw nb::python_error();
+}
+
+/// Raises strainwave.errors.ConfigurationError where a check found something.
+template <class Real>
+void require(const Violation<Real>& violation) {
+  if (violation.ok()) {
+    return;
+  }
+  std::string parameter = violation.parameter;
+  if (violation.index >= 0) {
+    parameter += "[" + std::to_string(violation.index) + "]";
+  }
+  const nb::object type = nb::module_::import_("strainwave.errors").attr("ConfigurationError");
+  const nb::object error =
+      type(parameter, static_cast<double>(violation.value), violation.unit, violation.expected);
+  PyErr_SetObject(type.ptr(), error.ptr());
+  throw nb::python_error();
+}
+
+inline void require_same_length(const char* name, std::size_t length, const char* other,
+                                std::size_t expected) {
+  if (length != expected) {
+    raise_input_error(std::string(name) + " has " + std::to_string(length) +
+                      " elements: expected " + std::to_string(expected) + " as in " + other +
+                      "; give arrays of one length");
+  }
+}
+
+/// Refuses arrays of the precision that the object was not built for.
+template <class Real>
+void require_precision(bool single_precision) {
+  if (single_precision != std::is_same_v<Real, float>) {
+    raise_input_error(single_precision
+                          ? "float64 arrays were given: expected float32, the precision this was "
+                            "built with; call process_float32"
+                          : "float32 arrays were given: expected float64, the precision this was "
+                            "built with; call process_float64");
+  }
+}
+
+/// The ratio, or an InputError where it does not fit.
+inline Rational require_representable(Rational ratio, const char* what) {
+  if (!is_valid(ratio)) {
+    raise_input_error(std::string(what) +
+                      " has no ratio of whole numbers from 1 to 2^31 - 1: expected smaller "
+                      "numbers; round them");
+  }
+  return ratio;
+}
+
+/// A ratio from Rational, int, fractions.Fraction or float; {0, 0} where there is none.
+inline Rational to_rational(const nb::handle& value) {
+  Rational ratio;
+  if (nb::try_cast(value, ratio)) {
+    return ratio;
+  }
+  std::uint64_t numerator = 0;
+  std::uint64_t denominator = 0;
+  if (nb::hasattr(value, "numerator") && nb::hasattr(value, "denominator")) {
+    const bool whole = nb::try_cast(nb::object(value.attr("numerator")), numerator) &&
+                       nb::try_cast(nb::object(value.attr("denominator")), denominator);
+    return whole ? reduced(numerator, denominator) : Rational{0, 0};
+  }
+  double real = 0.0;
+  return nb::try_cast(value, real) ? rational_from(real) : Rational{0, 0};
+}
+
+/// A ratio that is valid, or a ConfigurationError naming the parameter.
+inline Rational to_valid_rational(const nb::handle& value, const char* parameter,
+                                  const char* unit) {
+  const Rational ratio = to_rational(value);
+  if (!is_valid(ratio)) {
+    const nb::object type = nb::module_::import_("strainwave.errors").attr("ConfigurationError");
+    const nb::object error =
+        type(parameter, nb::borrow(value), "",
+             std::string("a positive ratio of whole numbers below 2^31, such as 100, 120.5 or "
+                         "Fraction(1, 100), in ") +
+                 unit);
+    PyErr_SetObject(type.ptr(), error.ptr());
+    throw nb::python_error();
+  }
+  return ratio;
+}
+
+void bind_units(nb::module_& m);
+void bind_status(nb::module_& m);
+void bind_gear(nb::module_& m);
+void bind_fluctuation(nb::module_& m);
+void bind_bridge(nb::module_& m);
+void bind_gains(nb::module_& m);
+void bind_calibration(nb::module_& m);
+void bind_oscillator_filter(nb::module_& m);
+void bind_torque_sensor(nb::module_& m);
+
+}  // namespace strainwave::bindings

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common.hpp"
+
+NB_MODULE(_core, m) {
+  m.doc() = "The C++ core of strainwave: the same headers that run on the microcontroller.";
+  // NOLINTNEXTLINE(google-build-using-namespace)
+  using namespace strainwave::bindings;
+  bind_units(m);
+  bind_status(m);
+  bind_gear(m);
+  bind_fluctuation(m);
+  bind_bridge(m);
+  bind_gains(m);
+  bind_calibration(m);
+  bind_oscillator_filter(m);
+  bind_torque_sensor(m);
+}

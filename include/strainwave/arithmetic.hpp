@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file arithmetic.hpp
+/// The few functions every part of the core shares: finiteness, square root, cosine and sine.
+///
+/// They are written here, and not taken from the platform's library, where two platforms would
+/// otherwise answer differently: host, Python and microcontroller run the same operations in the
+/// same order.  The square root is the exception, because IEEE 754 fixes its result.
+#pragma once
+
+#if !defined(__GNUC__)
+#include <cmath>  // GCC 13 and later refuse it where there is no operating system
+#endif
+#include <cstdint>
+#include <limits>
+#include <type_traits>
+
+namespace strainwave {
+
+template <class Real>
+inline constexpr Real pi = Real(3.141592653589793238462643383279502884L);
+template <class Real>
+inline constexpr Real two_pi = Real(6.283185307179586476925286766559005768L);
+
+/// True for every number that is neither infinite nor not-a-number; usable in constant expressions.
+template <class Real>
+[[nodiscard]] constexpr bool is_finite(Real value) {
+  static_assert(std::is_floating_point_v<Real>, "strainwave: Real must be float or double");
+  return value >= std::numeric_limits<Real>::lowest() && value <= std::numeric_limits<Real>::max();
+}
+
+template <class Number>
+[[nodiscard]] constexpr Number absolute(Number value) {
+  return value < Number(0) ? -value : value;
+}
+
+template <class Real>
+[[nodiscard]] inline Real square_root(Real value) {
+#if defined(__GNUC__)
+  // The builtin is one instruction where the processor has it, and needs no hosted <cmath>.
+  if constexpr (std::is_same_v<Real, float>) {
+    return __builtin_sqrtf(value);
+  } else {
+    return __builtin_sqrt(value);
+  }
+#else
+  return std::sqrt(value);
+#endif
+}
+
+/// Cosine and sine of one angle.
+template <class Real>
+struct CosSin {
+  Real cosine;
+  Real sine;
+};
+
+namespace detail {
+
+/// Cosine and sine of an angle within an eighth of a turn either side of zero, by Taylor series.
+/// The first term left out is below half a unit in the last place of Real at pi/4.
+template <class Real>
+[[nodiscard]] constexpr CosSin<Real> cos_sin_reduced(Real angle_rad) {
+  const Real square = angle_rad * angle_rad;
+  if constexpr (std::is_same_v<Real, float>) {
+    constexpr float s3 = -1.0F / 6.0F;
+    constexpr float s5 = 1.0F / 120.0F;
+    constexpr float s7 = -1.0F / 5040.0F;
+    constexpr float s9 = 1.0F / 362880.0F;
+    constexpr float c4 = 1.0F / 24.0F;
+    constexpr float c6 = -1.0F / 720.0F;
+    constexpr float c8 = 1.0F / 40320.0F;
+    const float sine =
+        angle_rad + angle_rad * square * (s3 + square * (s5 + square * (s7 + square * s9)));
+    const float cosine = 1.0F - square * (0.5F - square * (c4 + square * (c6 + square * c8)));
+    return {cosine, sine};
+  } else {
+    constexpr Real s3 = Real(-1) / Real(6);
+    constexpr Real s5 = Real(1) / Real(120);
+    constexpr Real s7 = Real(-1) / Real(5040);
+    constexpr Real s9 = Real(1) / Real(362880);
+    constexpr Real s11 = Real(-1) / Real(39916800);
+    constexpr Real s13 = Real(1) / Real(6227020800);
+    constexpr Real s15 = Real(-1) / Real(1307674368000);
+    constexpr Real s17 = Real(1) / Real(355687428096000);
+    constexpr Real c4 = Real(1) / Real(24);
+    constexpr Real c6 = Real(-1) / Real(720);
+    constexpr Real c8 = Real(1) / Real(40320);
+    constexpr Real c10 = Real(-1) / Real(3628800);
+    constexpr Real c12 = Real(1) / Real(479001600);
+    constexpr Real c14 = Real(-1) / Real(87178291200);
+    constexpr Real c16 = Real(1) / Real(20922789888000);
+    Real s_tail = s15 + square * s17;
+    s_tail = s11 + square * (s13 + square * s_tail);
+    s_tail = s7 + square * (s9 + square * s_tail);
+    s_tail = s3 + square * (s5 + square * s_tail);
+    Real c_tail = c14 + square * c16;
+    c_tail = c10 + square * (c12 + square * c_tail);
+    c_tail = c6 + square * (c8 + square * c_tail);
+    c_tail = c4 + square * c_tail;
+    return {Real(1) - square * (Real(0.5) - square * c_tail),
+            angle_rad + angle_rad * square * s_tail};
+  }
+}
+
+/// Turns a reduced pair by whole quarters of a turn.
+template <class Real>
+[[nodiscard]] constexpr CosSin<Real> turn_by_quarters(CosSin<Real> reduced,
+                                                      std::uint32_t quarters) {
+  switch (quarters & 3U) {
+    case 0:
+      return reduced;
+    case 1:
+      return {-reduced.sine, reduced.cosine};
+    case 2:
+      return {-reduced.cosine, -reduced.sine};
+    default:
+      return {reduced.sine, -reduced.cosine};
+  }
+}
+
+}  // namespace detail
+
+/// Cosine and sine of a fraction of a turn in units of 2^-32 turn.  The reduction is exact, so the
+/// result is as good after a year of running as in the first turn.
+template <class Real>
+[[nodiscard]] constexpr CosSin<Real> cos_sin_of_fraction(std::uint32_t fraction) {
+  constexpr std::uint32_t eighth = 1U << 29U;
+  const std::uint32_t quarters = (fraction + eighth) >> 30U;
+  const auto remainder = static_cast<std::int32_t>(fraction - (quarters << 30U));
+  constexpr Real radians_per_unit = two_pi<Real> / Real(4294967296.0);
+  return detail::turn_by_quarters(
+      detail::cos_sin_reduced(static_cast<Real>(remainder) * radians_per_unit), quarters);
+}
+
+/// The largest angle cos_sin_of_radians() takes, rad; beyond it the reduction would lose digits.
+inline constexpr std::int32_t largest_reducible_angle_rad = 100000;
+
+/// Cosine and sine of an angle in radians, |angle| <= largest_reducible_angle_rad.
+template <class Real>
+[[nodiscard]] constexpr CosSin<Real> cos_sin_of_radians(Real angle_rad) {
+  // A quarter turn in parts, all but the last short enough for an exact product with the count.
+  const Real scaled = angle_rad * (Real(2) / pi<Real>);
+  const auto count =
+      static_cast<std::int32_t>(scaled + (scaled < Real(0) ? Real(-0.5) : Real(0.5)));
+  const auto quarters = static_cast<Real>(count);
+  Real reduced = angle_rad;
+  if constexpr (std::is_same_v<Real, float>) {
+    reduced -= quarters * 1.5703125F;
+    reduced -= quarters * 0.0004825592041015625F;
+    reduced -= quarters * 1.2665987014770508e-06F;
+    reduced -= quarters * 9.920935796805404e-10F;
+  } else {
+    reduced -= quarters * Real(1.57079632673412561417);
+    reduced -= quarters * Real(6.07710050630396597660e-11);
+    reduced -= quarters * Real(2.02226624879595063154e-21);
+  }
+  return detail::turn_by_quarters(detail::cos_sin_reduced(reduced),
+                                  static_cast<std::uint32_t>(count));
+}
+
+}  // namespace strainwave

@@ -1,0 +1,65 @@
+"""strainwave: clean joint torque from the strain gauges inside a strain wave gear.
+
+The arithmetic is the C++ core's, the same headers that run on a microcontroller; this package
+drives it with arrays. Angles are mechanical and in rad, torque is in Nm on the output side.
+"""
+
+from importlib.metadata import version
+
+from strainwave._core import (
+    Amplifier,
+    Converter,
+    EncoderCounter,
+    Gains,
+    GaugeFluctuation,
+    Gear,
+    GearConfiguration,
+    OscillatorFilterConfig,
+    Phase,
+    Rational,
+    Rosette,
+    RotationSource,
+    StatusFlag,
+    TorqueCalibration,
+    TorqueSensorConfig,
+    equally_spaced_position_rad,
+    full_bridge_V,
+    nominal_ratio,
+    signed_reduction_ratio,
+)
+from strainwave.errors import ConfigurationError, InputError, StrainwaveError
+from strainwave.filter import FilterResult, OscillatorFilter, oscillator_preset
+from strainwave.sensor import SensorResult, TorqueSensor
+
+__version__ = version("strainwave")
+
+__all__ = [
+    "Amplifier",
+    "ConfigurationError",
+    "Converter",
+    "EncoderCounter",
+    "FilterResult",
+    "Gains",
+    "GaugeFluctuation",
+    "Gear",
+    "GearConfiguration",
+    "InputError",
+    "OscillatorFilter",
+    "OscillatorFilterConfig",
+    "Phase",
+    "Rational",
+    "Rosette",
+    "RotationSource",
+    "SensorResult",
+    "StatusFlag",
+    "StrainwaveError",
+    "TorqueCalibration",
+    "TorqueSensor",
+    "TorqueSensorConfig",
+    "__version__",
+    "equally_spaced_position_rad",
+    "full_bridge_V",
+    "nominal_ratio",
+    "oscillator_preset",
+    "signed_reduction_ratio",
+]

@@ -1,0 +1,127 @@
+"""Arrays from callers, in the form the core takes: one axis, contiguous, one precision."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import numpy as np
+
+from strainwave.errors import InputError
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, DTypeLike, NDArray
+
+Number = TypeVar("Number", bound=np.generic)
+
+
+def contiguous(
+    name: str, values: ArrayLike, dtype: type[Number], *, dimensions: int = 1
+) -> NDArray[Number]:
+    """Contiguous array of a precision; the caller's own memory where it has that form already.
+
+    Parameters
+    ----------
+    name : str
+        Name of the parameter, for the error.
+    values : array_like
+        Numbers.
+    dtype : type
+        Precision of the result.
+    dimensions : int
+        How many axes the array must have.
+
+    Returns
+    -------
+    numpy.ndarray
+        The values, not copied unless their type or layout differs.
+
+    Raises
+    ------
+    InputError
+        If the values are no numbers or have another number of axes.
+    """
+    try:
+        array = np.asarray(values)
+    except ValueError as error:
+        raise InputError(
+            f"{name} has rows of different lengths: expected an array of numbers with "
+            f"{dimensions} axes; make the rows equally long"
+        ) from error
+    if array.dtype.kind not in "fiub":
+        raise InputError(
+            f"{name} holds {array.dtype} values: expected real numbers; convert them first"
+        )
+    if array.ndim != dimensions:
+        raise InputError(
+            f"{name} has the shape {array.shape}: expected {dimensions} "
+            f"{'axis' if dimensions == 1 else 'axes'}; reshape the array"
+        )
+    if np.dtype(dtype).kind in "iu":
+        _require_whole(name, array, dtype)
+    # What float32 cannot hold becomes infinite, which the sample path rejects and counts.
+    with np.errstate(over="ignore"):
+        return np.ascontiguousarray(array, dtype=dtype)
+
+
+def optional_contiguous(
+    name: str, values: ArrayLike | None, dtype: type[Number]
+) -> NDArray[Number] | None:
+    """Do what `contiguous` does, and pass None on.
+
+    Parameters
+    ----------
+    name : str
+        Name of the parameter, for the error.
+    values : array_like or None
+        Numbers.
+    dtype : type
+        Precision of the result.
+
+    Returns
+    -------
+    numpy.ndarray or None
+        The values.
+    """
+    return None if values is None else contiguous(name, values, dtype)
+
+
+def precision(dtype: DTypeLike) -> type[np.float64] | type[np.float32]:
+    """Precision of the core that a dtype names.
+
+    Parameters
+    ----------
+    dtype : dtype_like
+        float64 or float32.
+
+    Returns
+    -------
+    type
+        numpy.float64 or numpy.float32.
+
+    Raises
+    ------
+    InputError
+        If it is neither.
+    """
+    try:
+        named: np.dtype[Any] | None = np.dtype(dtype)
+    except TypeError:
+        named = None
+    if named == np.float64:
+        return np.float64
+    if named == np.float32:
+        return np.float32
+    raise InputError(f"dtype = {dtype!r}: expected float64 or float32; choose one of them")
+
+
+def _require_whole(name: str, array: NDArray[Any], dtype: type[np.generic]) -> None:
+    if array.dtype.kind == "f" and not np.all(np.isfinite(array) & (array == np.floor(array))):
+        raise InputError(
+            f"{name} holds values that are no whole numbers: expected whole numbers; round them"
+        )
+    limits = np.iinfo(np.dtype(dtype))
+    if array.size and (array.min() < limits.min or array.max() > limits.max):
+        raise InputError(
+            f"{name} reaches from {array.min()} to {array.max()}: expected {limits.min} to "
+            f"{limits.max}; check where they come from"
+        )

@@ -1,0 +1,52 @@
+"""The command `strainwave`: its subcommands, and how it ends when it cannot do what was asked."""
+
+from __future__ import annotations
+
+import sys
+from importlib.metadata import version
+from typing import TYPE_CHECKING, Final
+
+import cyclopts
+
+from strainwave.cli.demo import demo
+from strainwave.cli.joint import joint_app
+from strainwave.errors import InputError
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+#: Exit code where what a person gave cannot be used.
+UNUSABLE_INPUT: Final = 2
+
+app = cyclopts.App(
+    name="strainwave",
+    help="Clean joint torque from the strain gauges inside a strain wave gear.",
+    help_format="plaintext",
+    default_parameter=cyclopts.Parameter(negative=()),
+    version=version("strainwave"),
+)
+app.command(demo)
+app.command(joint_app)
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Run the command line and end the process.
+
+    Parameters
+    ----------
+    arguments : sequence of str, optional
+        What follows the command's name; the process's own arguments without.
+    """
+    try:
+        app(arguments, exit_on_error=False, print_error=False, result_action="return_value")
+    except cyclopts.CycloptsError as error:
+        _refuse(f"{' '.join(str(error).split())}; see `strainwave --help`")
+    except InputError as error:
+        _refuse(str(error))
+    except KeyboardInterrupt:
+        sys.exit(130)
+
+
+def _refuse(message: str) -> None:
+    sys.stderr.write(f"strainwave: {message}\n")
+    sys.exit(UNUSABLE_INPUT)

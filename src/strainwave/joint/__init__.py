@@ -1,0 +1,72 @@
+"""The joint file: the one place where what is known of a joint is kept."""
+
+from strainwave.joint.canonical import canonical_form, canonical_hash, section_hash
+from strainwave.joint.document import JointFile
+from strainwave.joint.file import (
+    build_section,
+    new_joint,
+    parse_joint,
+    read_joint,
+    write_joint,
+)
+from strainwave.joint.gains import Gains, GainsWithoutGauge
+from strainwave.joint.gauges import Gauges, Rosette
+from strainwave.joint.gear import Gear
+from strainwave.joint.migrations import SCHEMA_VERSION
+from strainwave.joint.misalignment import Misalignment, MisalignmentTerm
+from strainwave.joint.model import SECTION_MODELS, SECTION_NAMES, Identity, Joint
+from strainwave.joint.provenance import Provenance, Section
+from strainwave.joint.ripple_filter import RippleFilter, order_value
+from strainwave.joint.signals import (
+    AngleColumn,
+    Column,
+    Signals,
+    SpeedColumn,
+    TemperatureColumn,
+    TimeColumn,
+    TorqueColumn,
+    VoltageColumn,
+)
+from strainwave.joint.temperature import Temperature
+from strainwave.joint.torque_calibration import TorqueCalibration
+from strainwave.joint.units import Conversion, conversion
+
+__all__ = [
+    "SCHEMA_VERSION",
+    "SECTION_MODELS",
+    "SECTION_NAMES",
+    "AngleColumn",
+    "Column",
+    "Conversion",
+    "Gains",
+    "GainsWithoutGauge",
+    "Gauges",
+    "Gear",
+    "Identity",
+    "Joint",
+    "JointFile",
+    "Misalignment",
+    "MisalignmentTerm",
+    "Provenance",
+    "RippleFilter",
+    "Rosette",
+    "Section",
+    "Signals",
+    "SpeedColumn",
+    "Temperature",
+    "TemperatureColumn",
+    "TimeColumn",
+    "TorqueCalibration",
+    "TorqueColumn",
+    "VoltageColumn",
+    "build_section",
+    "canonical_form",
+    "canonical_hash",
+    "conversion",
+    "new_joint",
+    "order_value",
+    "parse_joint",
+    "read_joint",
+    "section_hash",
+    "write_joint",
+]

@@ -1,0 +1,147 @@
+"""The joint: everything a joint file says, checked across its sections."""
+
+from __future__ import annotations
+
+from typing import Final, get_args
+
+from pydantic import Field, ValidationInfo, field_validator, model_validator
+
+from strainwave.joint.base import FilePart, Line, Lines
+from strainwave.joint.gains import Gains
+from strainwave.joint.gauges import Gauges
+from strainwave.joint.gear import Gear
+from strainwave.joint.misalignment import Misalignment
+from strainwave.joint.provenance import Section
+from strainwave.joint.ripple_filter import RippleFilter, repeated_order
+from strainwave.joint.signals import Signals
+from strainwave.joint.temperature import Temperature
+from strainwave.joint.torque_calibration import TorqueCalibration
+
+
+class Identity(FilePart):
+    """Which joint the file is about: the section ``[joint]``."""
+
+    name: Line = Field(description="Name of the joint")
+    serial: Line | None = Field(default=None, description="Serial number of the joint or gear")
+    notes: Lines | None = Field(default=None, description="Anything a reader should know")
+
+
+class Joint(FilePart):
+    """What is known of a joint.
+
+    Every section but ``[joint]`` is optional; one that is there has its provenance.
+    """
+
+    identity: Identity = Field(alias="joint", description="Which joint the file is about")
+    gear: Gear | None = Field(default=None, description="The strain wave gear")
+    signals: Signals | None = Field(
+        default=None, description="How a recording of this joint is read"
+    )
+    gauges: Gauges | None = Field(default=None, description="Strain gauges and electronics")
+    gains: Gains | None = Field(default=None, description="Gain of every gauge")
+    torque_calibration: TorqueCalibration | None = Field(
+        default=None, description="From sensor voltage to torque"
+    )
+    ripple_filter: RippleFilter | None = Field(
+        default=None, description="What is removed from the torque, and how"
+    )
+    misalignment: Misalignment | None = Field(
+        default=None, description="Torque that repeats with the output's angle"
+    )
+    temperature: Temperature | None = Field(default=None, description="Drift with temperature")
+
+    @field_validator(
+        "gear",
+        "signals",
+        "gauges",
+        "gains",
+        "torque_calibration",
+        "ripple_filter",
+        "misalignment",
+        "temperature",
+        mode="after",
+    )
+    @classmethod
+    def _has_provenance(cls, section: Section | None, info: ValidationInfo) -> Section | None:
+        if section is not None and section.provenance is None:
+            raise ValueError(
+                f"lacks the section [{info.field_name}.provenance], which says where the values "
+                "come from; add it with the keys input, created and version"
+            )
+        return section
+
+    @model_validator(mode="after")
+    def _gauges_agree(self) -> Joint:
+        if self.gauges is None:
+            return self
+        count = self.gauges.channel_count
+        wiring = f'{count} channel(s): {len(self.gauges.rosettes)} rosette(s) wired as "{{}}"'
+        wiring = wiring.format(self.gauges.wiring)
+        if self.gains is not None and len(self.gains.gains) != count:
+            raise ValueError(
+                f"[gains] has {len(self.gains.gains)} gains, but [gauges] has {wiring}; expected "
+                "one gain for each channel, so identify the gains again or correct [gauges]"
+            )
+        if self.signals is not None and len(self.signals.gauges) not in (0, count):
+            raise ValueError(
+                f"[signals] has {len(self.signals.gauges)} gauge columns, but [gauges] has "
+                f"{wiring}; expected one column for each channel, or none"
+            )
+        return self
+
+    @model_validator(mode="after")
+    def _converter_codes_can_be_read(self) -> Joint:
+        columns = () if self.signals is None else self.signals.gauges
+        if self.signals is not None and self.signals.sensor_voltage is not None:
+            columns += (self.signals.sensor_voltage,)
+        in_codes = any(column.unit == "counts" for column in columns)
+        if in_codes and self.gauges is not None and self.gauges.converter_bits is None:
+            raise ValueError(
+                '[signals] has a column in "counts", but [gauges] does not describe the converter; '
+                "add converter_bits, converter_minimum_V and converter_maximum_V to [gauges]"
+            )
+        return self
+
+    @model_validator(mode="after")
+    def _gear_is_there_where_it_is_needed(self) -> Joint:
+        linearised = self.torque_calibration is not None and self.torque_calibration.linearisation
+        if linearised and self.gear is None:
+            raise ValueError(
+                "[torque_calibration] has a linearisation, which is relative to the rated torque, "
+                "but there is no section [gear]; add [gear] with rated_torque_Nm"
+            )
+        if self.ripple_filter is None:
+            return self
+        orders = self.ripple_filter.orders
+        if self.gear is None:
+            for order in orders:
+                if isinstance(order, str) and order.endswith("R"):
+                    raise ValueError(
+                        f'[ripple_filter] has the order "{order}", where R is the ratio of the '
+                        "gear, but there is no section [gear]; add [gear], or write the order as "
+                        "a number"
+                    )
+            return self
+        repeated = repeated_order(orders, self.gear.ratio)
+        if repeated is not None:
+            raise ValueError(
+                f"[ripple_filter] has the order {repeated} twice in orders, for the ratio "
+                f"{self.gear.ratio:g} of [gear]; remove one of them"
+            )
+        return self
+
+
+def _section_models() -> dict[str, type[Section]]:
+    models: dict[str, type[Section]] = {}
+    for name, field in Joint.model_fields.items():
+        for choice in get_args(field.annotation):
+            if isinstance(choice, type) and issubclass(choice, Section):
+                models[name] = choice
+    return models
+
+
+SECTION_MODELS: Final[dict[str, type[Section]]] = _section_models()
+"""The model of each section that commands fill, by its name in the file."""
+
+SECTION_NAMES: Final[tuple[str, ...]] = tuple(SECTION_MODELS)
+"""Names of the sections that commands fill, in the order of the file."""

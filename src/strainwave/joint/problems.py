@@ -1,0 +1,203 @@
+"""Turns what the models object to into one clear sentence."""
+
+from __future__ import annotations
+
+import difflib
+import json
+import re
+from collections.abc import Mapping, Sequence
+
+from pydantic import BaseModel, ValidationError
+from pydantic_core import ErrorDetails
+
+from strainwave.errors import InputError
+from strainwave.joint.fields import choices_of, field_at, key_of, kind_of, range_of, unit_of
+
+_WRONG_KIND = {
+    "float_type": "a number",
+    "int_type": "a whole number",
+    "int_from_float": "a whole number",
+    "string_type": "a text in quotation marks",
+    "tuple_type": "a list in square brackets",
+    "list_type": "a list in square brackets",
+    "model_type": "a table of keys and values",
+    "model_attributes_type": "a table of keys and values",
+    "dict_type": "a table of keys and values",
+    "finite_number": "a finite number",
+    "string_too_short": "a text that is not empty",
+    "string_unicode": "a text of valid characters",
+    "string_pattern_mismatch": "64 hexadecimal digits",
+}
+_RANGE = ("greater_than", "greater_than_equal", "less_than", "less_than_equal")
+_LONGEST_SHOWN = 60
+_CONSEQUENCE = "default_factory_not_called"
+"""Reported for a default that depends on a field which is itself in error."""
+
+
+def shown(value: object) -> str:
+    """Return a value as it stands in a TOML file, cut where it is long."""
+    if isinstance(value, bool):
+        text = "true" if value else "false"
+    elif isinstance(value, str):
+        text = json.dumps(value, ensure_ascii=False).encode("utf-8", "backslashreplace").decode()
+    elif isinstance(value, int) and abs(value) >= 10**_LONGEST_SHOWN:
+        text = f"a number of more than {_LONGEST_SHOWN} digits"
+    elif isinstance(value, Mapping):
+        text = "a table"
+    elif isinstance(value, list | tuple):
+        text = f"[{', '.join(shown(item) for item in value)}]"
+    elif hasattr(value, "isoformat"):
+        text = value.isoformat()
+    else:
+        text = repr(value)
+    return text if len(text) <= _LONGEST_SHOWN else text[: _LONGEST_SHOWN - 3] + "..."
+
+
+def place(location: Sequence[str | int], *, table: bool = False) -> str:
+    """Return a location in words: ``[gauges.rosettes] entry 2, radius_m``.
+
+    Parameters
+    ----------
+    location : sequence of str or int
+        Keys, and positions in lists counted from 0.
+    table : bool
+        True where the location is that of a table, False where it is that of a value.
+
+    Returns
+    -------
+    str
+        Empty for the file as a whole.
+    """
+    if not location:
+        return ""
+    keys = [position for position, step in enumerate(location) if isinstance(step, str)]
+    last = len(location) if table or len(keys) == 1 else keys[-1]
+    path = ".".join(str(step) for step in location[:last] if isinstance(step, str))
+    rest = [f"entry {step + 1}" for step in location[:last] if isinstance(step, int)]
+    rest += [f"entry {step + 1}" if isinstance(step, int) else step for step in location[last:]]
+    return f"[{path}] {', '.join(rest)}".rstrip()
+
+
+def _unknown_key(error: ErrorDetails, model: type[BaseModel], prefix: Sequence[str]) -> str:
+    *table_location, key = error["loc"]
+    table, _ = field_at(model, table_location)
+    fields = {} if table is None else table.model_fields
+    known = {name.lower(): name for name in (key_of(*item) for item in fields.items())}
+    close = difflib.get_close_matches(str(key).lower(), list(known), n=1)
+    if close:
+        advice = f'(did you mean "{known[close[0]]}"?); rename or remove it'
+    else:
+        advice = f"(known are {', '.join(known.values())}); remove it"
+    table_place = place((*prefix, *table_location), table=True)
+    if table_place:
+        return f"{table_place} has the unknown key {shown(key)} {advice}"
+    if isinstance(error["input"], Mapping):
+        return f"[{key}] is not a section of a joint file {advice}"
+    return f"the key {shown(key)} outside the sections is unknown {advice}"
+
+
+def _expected(error: ErrorDetails, model: type[BaseModel]) -> str:
+    _, field = field_at(model, error["loc"])
+    kind = error["type"]
+    context = error.get("ctx", {})
+    if kind.startswith(("datetime", "timezone")):
+        text = "a date and time with time zone, such as 2026-11-01T12:00:00Z"
+    elif kind == "literal_error" and field is not None:
+        text = " or ".join(shown(choice) for choice in choices_of(field))
+    elif kind in _RANGE and field is not None:
+        text = f"a {kind_of(field).removeprefix('list, each ')} {range_of(field)}"
+    elif kind == "float_type" and isinstance(error["input"], int) and abs(error["input"]) > 1:
+        text = "a number of double precision, at most 1.8e308 in magnitude"
+    elif kind == "too_short":
+        text = f"a list of at least {context['min_length']}"
+    elif kind == "too_long":
+        text = f"a list of at most {context['max_length']}"
+    elif kind == "string_too_long":
+        text = f"a text of at most {context['max_length']} characters"
+    else:
+        text = _WRONG_KIND.get(kind, error["msg"].lower())
+    unit = None if field is None else unit_of(field)
+    if unit not in (None, "1"):
+        text += f", in {unit}"
+    return text
+
+
+def _about(error: ErrorDetails, model: type[BaseModel]) -> str:
+    """Return the first clause of the field's description, in parentheses."""
+    _, field = field_at(model, error["loc"])
+    if field is None or not field.description:
+        return ""
+    clause = re.split(r"[;:(]", field.description)[0].strip().replace("`", "")
+    starts_with_word = clause[1:2].islower() or clause[1:2] == " "
+    return f" ({clause[0].lower() if starts_with_word else clause[0]}{clause[1:]})"
+
+
+def sentence(error: ErrorDetails, model: type[BaseModel], prefix: Sequence[str] = ()) -> str:
+    """Say what one of pydantic's errors means for the file.
+
+    Parameters
+    ----------
+    error : ErrorDetails
+        One of ``ValidationError.errors()``.
+    model : type
+        The model that was validated.
+    prefix : sequence of str
+        Location of that model in the file.
+
+    Returns
+    -------
+    str
+        Place, value, what was expected, what to do; without the file and without a full stop.
+    """
+    location = (*prefix, *error["loc"])
+    where = place(location)
+    kind = error["type"]
+    if kind == "missing":
+        if len(location) == 1:
+            return f"the section {where} is missing{_about(error, model)}; add it"
+        table_place = place(location[:-1], table=True)
+        return f'{table_place} lacks the key "{location[-1]}"{_about(error, model)}; add it'
+    if kind == "extra_forbidden":
+        return _unknown_key(error, model, prefix)
+    if kind == "value_error":
+        message = str(error.get("ctx", {}).get("error", error["msg"]))
+        if isinstance(error["input"], Mapping | BaseModel):
+            return f"{place(location, table=True)} {message}".strip()
+        advice = "" if ";" in message else "; correct this value"
+        return f"{where} = {shown(error['input'])}: {message}{advice}"
+    return (
+        f"{where} = {shown(error['input'])}: expected {_expected(error, model)}"
+        f"{_about(error, model)}; correct this value"
+    )
+
+
+def input_error(
+    error: ValidationError, source: str, model: type[BaseModel], prefix: Sequence[str] = ()
+) -> InputError:
+    """Return the error to raise for values that a model does not take.
+
+    Parameters
+    ----------
+    error : ValidationError
+        What pydantic says.
+    source : str
+        File (or other place) the values come from.
+    model : type
+        The model that was validated.
+    prefix : sequence of str
+        Location of that model in the file.
+
+    Returns
+    -------
+    InputError
+        With one sentence about the first problem, and the number of further ones.
+    """
+    details: list[ErrorDetails] = [
+        item for item in error.errors(include_url=False) if item["type"] != _CONSEQUENCE
+    ]
+    # A misspelt key is also a missing one: the spelling is what helps.
+    details.sort(key=lambda item: item["type"] != "extra_forbidden")
+    text = f"{source}: {sentence(details[0], model, prefix)}"
+    if len(details) > 1:
+        text += f" ({len(details) - 1} more problem{'s' if len(details) > 2 else ''} after this)"
+    return InputError(text)

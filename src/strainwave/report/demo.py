@@ -1,0 +1,160 @@
+"""The demo: both papers run, one page of theirs beside ours, and the picture for the README."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from importlib.metadata import version
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+
+from strainwave.atomic import write_atomically
+from strainwave.errors import InputError
+from strainwave.report.demo_godler import godler_part
+from strainwave.report.demo_taghirad import taghirad_part
+from strainwave.report.demo_tuning import tuning_part
+from strainwave.report.figures_overview import before_and_after_figure
+from strainwave.report.page import Item, Page, Part, Tile, all_comparisons, render
+from strainwave.report.style import svg
+from strainwave.reproduce import godler2000, godler2000_comparison, taghirad1999
+from strainwave.reproduce.overview import overview
+from strainwave.reproduce.tuning import tuning_study
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from strainwave.reproduce.comparison import Comparison
+
+STEPS: Final = (
+    "static calibration and free motion (Taghirad & Bélanger)",
+    "two, four and three gauges (Godler et al.)",
+    "what the published tuning does to true torque",
+    "before and after",
+    "figures and page",
+)
+SIGNAL_FLOW: Final = (
+    "gauges -> bridge volts -> converter codes -> gains -> torque (Nm) -> ripple removed"
+)
+
+
+@dataclass(frozen=True)
+class DemoReport:
+    """What the demo wrote.
+
+    Attributes
+    ----------
+    page : Path
+        The HTML report.
+    picture : Path
+        Torque before and after, as SVG.
+    comparisons : tuple of Comparison
+        Every published number beside ours.
+    """
+
+    page: Path
+    picture: Path
+    comparisons: tuple[Comparison, ...]
+
+
+def write_demo(
+    folder: Path,
+    *,
+    on_step: Callable[[str], None] = lambda _: None,
+    on_done: Callable[[], None] = lambda: None,
+) -> DemoReport:
+    """Run both papers and write the report.
+
+    Parameters
+    ----------
+    folder : Path
+        Where to; made where it does not exist.
+    on_step : callable
+        Told what begins.
+    on_done : callable
+        Told when a step has ended.
+
+    Returns
+    -------
+    DemoReport
+        What was written, and every comparison.
+
+    Raises
+    ------
+    InputError
+        If the folder cannot be made or written.
+    """
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InputError(
+            f"{folder}: it cannot be made a folder ({(error.strerror or str(error)).lower()}); "
+            "expected a place for the report, choose another one"
+        ) from error
+    steps = iter(STEPS)
+    on_step(next(steps))
+    taghirad = taghirad1999.run()
+    on_done()
+    on_step(next(steps))
+    godler = godler2000.run()
+    on_done()
+    on_step(next(steps))
+    tuning = tuning_study()
+    on_done()
+    on_step(next(steps))
+    picture_text = svg(before_and_after_figure(overview()))
+    on_done()
+    on_step(next(steps))
+    parts = (
+        taghirad_part(taghirad, taghirad1999.comparisons(taghirad)),
+        tuning_part(tuning),
+        godler_part(godler, godler2000_comparison.comparisons(godler)),
+    )
+    compared = all_comparisons(parts)
+    every = Part(
+        anchor="all",
+        title="Every number, theirs beside ours",
+        paragraphs=(
+            "T: Taghirad & Bélanger 1999. G: Godler et al. 2000. A number counts as reproduced "
+            "where ours lies within the accepted band; the band follows from how exactly the paper "
+            "gives its number.",
+        ),
+        items=(Item(title="Comparison", comparisons=compared),),
+    )
+    page = folder / "report.html"
+    picture = folder / "before-and-after.svg"
+    write_atomically(page, render(_page((*parts, every), compared)).encode())
+    write_atomically(picture, picture_text.encode())
+    on_done()
+    return DemoReport(page, picture, compared)
+
+
+def _page(parts: tuple[Part, ...], compared: tuple[Comparison, ...]) -> Page:
+    reproduced = sum(entry.reproduced for entry in compared)
+
+    def value(quantity: str) -> str:
+        entry = next(entry for entry in compared if entry.quantity.startswith(quantity))
+        return f"{entry.ours:.3g} {entry.unit}"
+
+    return Page(
+        title="The torque sensor inside a strain wave gear: two papers, run again",
+        lead=(
+            "A strain wave gear carries its own torque sensor: strain gauges on the flexspline. "
+            "Two papers made it work, and this page runs both again through one signal path.",
+        ),
+        signal_flow=SIGNAL_FLOW,
+        tiles=(
+            Tile(f"{reproduced} of {len(compared)}", "published numbers reproduced"),
+            Tile(value("torque sensor gain"), "sensor gain; the paper has 6.60 Nm/V"),
+            Tile(
+                value("fluctuation of the sum, gains adjusted"),
+                "left of the fluctuation with three tuned gauges; the paper has about ±0.2 %FS",
+            ),
+        ),
+        notice="Everything on this page is simulated, except where a table says computed. Physics "
+        "and electronics of the simulated stations are the papers' where they give them; what they "
+        "do not give was chosen so that the published figures come out, as each preset says. The "
+        "agreement therefore shows that one signal path carries both papers, not how good a real "
+        "sensor is.",
+        parts=parts,
+        command="strainwave demo --out DIR",
+        version=version("strainwave"),
+    )

@@ -1,0 +1,330 @@
+"""Godler et al. 2000: signal fluctuation and linearity of two, four and three gauges.
+
+Three simulated builds turn one revolution without load and are then loaded at standstill, as the
+paper's were. Every signal is given in %FS of the sum of all gauges, as the paper plots it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from strainwave import _core
+from strainwave.calibrate.fluctuation import (
+    CompensatingGains,
+    FluctuationFit,
+    compensating_gains,
+    compensation_conditions,
+    enough_gauges,
+    equally_spaced_positions_rad,
+    fit_fluctuation,
+    minimum_gauges,
+)
+from strainwave.calibrate.torque import SensorGain, sensor_gain
+from strainwave.reproduce import published
+from strainwave.simulate.presets.godler2000 import (
+    RATED_TORQUE_NM,
+    godler2000,
+    linearity_experiment,
+    one_turn,
+)
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+#: Harmonics of the fit; the stations have two, so that a third or fourth would be noise.
+HARMONICS: Final = 4
+#: Weights before the first full load, which run the hysteresis in and are not read.
+RUNNING_IN: Final = 9
+
+
+@dataclass(frozen=True)
+class Build:
+    """One build of the paper, run.
+
+    Attributes
+    ----------
+    gauges : int
+        Number of gauges.
+    angle_rad : numpy.ndarray
+        Input shaft angle over one turn, shape (samples,), rad.
+    signals_FS : numpy.ndarray
+        Gauge signals without their mean, shape (samples, gauges), fraction of full scale.
+    sum_FS : numpy.ndarray
+        Their sum with equal gains.
+    fit : FluctuationFit
+        Amplitudes and phase errors of the gauges' harmonics.
+    dominant_harmonic : int
+        Harmonic of the largest amplitude in the sum: 1 for two cycles per turn, 2 for four.
+    loads_Nm : numpy.ndarray
+        Torque applied at standstill, shape (loads,), Nm.
+    linearity_error_FS : numpy.ndarray
+        Distance of the indicated from the applied torque, shape (loads,), fraction of full scale.
+    line : SensorGain
+        Straight line through the loading.
+    """
+
+    gauges: int
+    angle_rad: NDArray[np.float64]
+    signals_FS: NDArray[np.float64]
+    sum_FS: NDArray[np.float64]
+    fit: FluctuationFit
+    dominant_harmonic: int
+    loads_Nm: NDArray[np.float64]
+    linearity_error_FS: NDArray[np.float64]
+    line: SensorGain
+
+    @property
+    def fluctuation_FS(self) -> float:
+        """Half of the peak-to-peak fluctuation of the sum."""
+        return half_peak_to_peak(self.sum_FS)
+
+    @property
+    def linearity_FS(self) -> float:
+        """Largest linearity error, hysteresis included, as a magnitude."""
+        return float(np.max(np.abs(self.linearity_error_FS)))
+
+
+@dataclass(frozen=True)
+class Compensation:
+    """Gains for the three gauges, and what they leave.
+
+    Attributes
+    ----------
+    from_paper : CompensatingGains
+        From the amplitudes and phases that the paper prints.
+    from_run : CompensatingGains
+        From the simulated run's own fit of the basic harmonic.
+    sum_FS : numpy.ndarray
+        Sum of the three signals with the gains from the run, fraction of full scale.
+    """
+
+    from_paper: CompensatingGains
+    from_run: CompensatingGains
+    sum_FS: NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Phasor:
+    """One gauge's vector in the diagram of fig. 8.
+
+    Attributes
+    ----------
+    sine, cosine : float
+        What multiplies sin(2 m beta) and cos(2 m beta), times the gauge's gain.
+    """
+
+    sine: float
+    cosine: float
+
+
+@dataclass(frozen=True)
+class GaugeCount:
+    """Whether M gauges cancel N harmonics.
+
+    Attributes
+    ----------
+    gauges, harmonics : int
+        M and N.
+    enough : bool
+        Eq. (10).
+    solutions : int
+        Dimension of the null space of eq. (9) for careless gauges.
+    """
+
+    gauges: int
+    harmonics: int
+    enough: bool
+    solutions: int
+
+
+@dataclass(frozen=True)
+class Godler2000:
+    """Everything the paper shows with numbers.
+
+    Attributes
+    ----------
+    two, four, three : Build
+        The paper's builds, by number of gauges.
+    three_compensated : Build
+        The third build with its gains.
+    compensation : Compensation
+        Gains of the third build.
+    vectors_two, vectors_three : tuple of Phasor
+        Vectors of fig. 8, gains included.
+    gauge_counts : tuple of GaugeCount
+        M_min = 2N + 1, tried.
+    """
+
+    two: Build
+    four: Build
+    three: Build
+    three_compensated: Build
+    compensation: Compensation
+    vectors_two: tuple[Phasor, ...]
+    vectors_three: tuple[Phasor, ...]
+    gauge_counts: tuple[GaugeCount, ...]
+
+
+def half_peak_to_peak(signal: NDArray[np.float64]) -> float:
+    """Half of the range of a signal, the +- of the paper's words.
+
+    Parameters
+    ----------
+    signal : numpy.ndarray
+        Signal in any unit.
+
+    Returns
+    -------
+    float
+        In the signal's unit.
+    """
+    return float(np.ptp(signal)) / 2
+
+
+def run_build(gauges: int, gains: NDArray[np.float64] | None = None) -> Build:
+    """Turn one build and load it.
+
+    Parameters
+    ----------
+    gauges : int
+        2, 4 or 3.
+    gains : numpy.ndarray, optional
+        Gains of the gauges; all 1 without.
+
+    Returns
+    -------
+    Build
+        Signals, fit and linearity error.
+    """
+    station = godler2000(gauges)
+    weights = _core.Gains(np.ones(gauges).tolist() if gains is None else gains.tolist())
+    scale = station.sensor_gain_Nm_per_V / RATED_TORQUE_NM
+    turning = one_turn(gauges, seed=gauges)
+    signals = turning.volts * scale
+    signals -= signals.mean(axis=0)
+    angle = turning.truth.motor_angle_rad
+    fit = fit_fluctuation(
+        signals,
+        angle,
+        positions_rad=[gauge.position_rad for gauge in station.gauges],
+        harmonics=HARMONICS,
+        wave_factor=station.wave_factor,
+    )
+    total = weights.weighted_sum(np.ascontiguousarray(signals))
+    loads, line, error = _linearity(gauges, weights)
+    return Build(
+        gauges=gauges,
+        angle_rad=angle,
+        signals_FS=signals,
+        sum_FS=total,
+        fit=fit,
+        dominant_harmonic=_dominant_harmonic(total, angle, station.wave_factor),
+        loads_Nm=loads,
+        linearity_error_FS=error,
+        line=line,
+    )
+
+
+def _dominant_harmonic(
+    total: NDArray[np.float64], angle: NDArray[np.float64], wave_factor: float
+) -> int:
+    fit = fit_fluctuation(
+        total[:, np.newaxis],
+        angle,
+        positions_rad=[0.0],
+        harmonics=HARMONICS,
+        wave_factor=wave_factor,
+    )
+    return int(np.argmax(fit.amplitudes[:, 0])) + 1
+
+
+def _linearity(
+    gauges: int, weights: _core.Gains
+) -> tuple[NDArray[np.float64], SensorGain, NDArray[np.float64]]:
+    """Load at standstill, and take the straight line through what the sensor shows."""
+    loading = linearity_experiment(gauges, seed=10 + gauges)
+    loads = loading.applied_torque_Nm[RUNNING_IN:]
+    volts = weights.weighted_sum(np.ascontiguousarray(loading.volts[RUNNING_IN:]))
+    line = sensor_gain(volts, loads, intercept=True)
+    shown_Nm = line.gain_Nm_per_V * (volts - line.zero_V)
+    return loads, line, (shown_Nm - loads) / RATED_TORQUE_NM
+
+
+def _compensation(three: Build) -> Compensation:
+    positions = equally_spaced_positions_rad(3)
+    from_paper = compensating_gains(
+        compensation_conditions(
+            [published.THREE_GAUGE_AMPLITUDES],
+            np.deg2rad([published.THREE_GAUGE_PHASE_ERRORS_DEG]),
+            positions,
+        )
+    )
+    from_run = compensating_gains(
+        compensation_conditions(three.fit.amplitudes[:1], three.fit.phase_errors_rad[:1], positions)
+    )
+    return Compensation(from_paper, from_run, three.signals_FS @ from_run.gains)
+
+
+def _vectors(
+    amplitudes: tuple[float, ...], phases_rad: NDArray[np.float64], gains: NDArray[np.float64]
+) -> tuple[Phasor, ...]:
+    positions = equally_spaced_positions_rad(len(amplitudes))
+    matrix = compensation_conditions([amplitudes], phases_rad[np.newaxis], positions) * gains
+    return tuple(Phasor(float(sine), float(cosine)) for sine, cosine in matrix.T)
+
+
+def _gauge_counts() -> tuple[GaugeCount, ...]:
+    """Rank of eq. (9) for gauges bonded without care: 15 % and 10 degrees of scatter."""
+    generator = np.random.default_rng(2000)
+    counts = []
+    for harmonics in (1, 2, 3):
+        for gauges in (minimum_gauges(harmonics) - 1, minimum_gauges(harmonics)):
+            matrix = compensation_conditions(
+                generator.normal(1.0, 0.15, (harmonics, gauges)),
+                generator.normal(0.0, np.deg2rad(10.0), (harmonics, gauges)),
+                equally_spaced_positions_rad(gauges),
+            )
+            counts.append(
+                GaugeCount(
+                    gauges,
+                    harmonics,
+                    enough_gauges(gauges, harmonics),
+                    gauges - int(np.linalg.matrix_rank(matrix)),
+                )
+            )
+    return tuple(counts)
+
+
+def run() -> Godler2000:
+    """Run all three builds and find the gains of the third.
+
+    Returns
+    -------
+    Godler2000
+        Every result.
+    """
+    three = run_build(3)
+    compensation = _compensation(three)
+    two_gains = compensating_gains(
+        compensation_conditions(
+            [published.THREE_GAUGE_AMPLITUDES[:2]],
+            np.deg2rad([published.THREE_GAUGE_PHASE_ERRORS_DEG[:2]]),
+            equally_spaced_positions_rad(2),
+        )
+    )
+    phases_rad = np.deg2rad(published.THREE_GAUGE_PHASE_ERRORS_DEG)
+    return Godler2000(
+        two=run_build(2),
+        four=run_build(4),
+        three=three,
+        three_compensated=run_build(3, compensation.from_run.gains),
+        compensation=compensation,
+        vectors_two=_vectors(published.THREE_GAUGE_AMPLITUDES[:2], phases_rad[:2], two_gains.gains),
+        vectors_three=_vectors(
+            published.THREE_GAUGE_AMPLITUDES, phases_rad, compensation.from_paper.gains
+        ),
+        gauge_counts=_gauge_counts(),
+    )

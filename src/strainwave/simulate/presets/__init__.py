@@ -1,0 +1,1 @@
+"""Test stations after published experiments."""

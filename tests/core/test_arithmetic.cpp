@@ -1,0 +1,136 @@
+#include "strainwave/arithmetic.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+namespace {
+
+using strainwave::cos_sin_of_fraction;
+using strainwave::cos_sin_of_radians;
+using strainwave::CosSin;
+
+/// Distance of a result from a reference in units in the last place of Real at 1.
+template <class Real>
+double error_in_epsilon(Real value, long double reference) {
+  const long double distance = std::fabs(static_cast<long double>(value) - reference);
+  return static_cast<double>(distance /
+                             static_cast<long double>(std::numeric_limits<Real>::epsilon()));
+}
+
+template <class Real>
+double error_of_pair(const CosSin<Real>& pair, long double angle_rad) {
+  return std::max(error_in_epsilon(pair.cosine, std::cos(angle_rad)),
+                  error_in_epsilon(pair.sine, std::sin(angle_rad)));
+}
+
+template <class Real>
+class Arithmetic : public testing::Test {};
+using Precisions = testing::Types<float, double>;
+TYPED_TEST_SUITE(Arithmetic, Precisions);
+
+TYPED_TEST(Arithmetic, FinitenessOfEveryKindOfNumber) {
+  using Limits = std::numeric_limits<TypeParam>;
+  static_assert(strainwave::is_finite(TypeParam(0)));
+  EXPECT_TRUE(strainwave::is_finite(Limits::max()));
+  EXPECT_TRUE(strainwave::is_finite(Limits::lowest()));
+  EXPECT_TRUE(strainwave::is_finite(Limits::denorm_min()));
+  EXPECT_FALSE(strainwave::is_finite(Limits::infinity()));
+  EXPECT_FALSE(strainwave::is_finite(-Limits::infinity()));
+  EXPECT_FALSE(strainwave::is_finite(Limits::quiet_NaN()));
+}
+
+TYPED_TEST(Arithmetic, SquareRootIsCorrectlyRounded) {
+  EXPECT_EQ(strainwave::square_root(TypeParam(2)), std::sqrt(TypeParam(2)));
+  EXPECT_EQ(strainwave::square_root(TypeParam(0)), TypeParam(0));
+  EXPECT_EQ(strainwave::square_root(TypeParam(6.25)), TypeParam(2.5));
+}
+
+TYPED_TEST(Arithmetic, AbsoluteKeepsZeroAndNaN) {
+  EXPECT_EQ(strainwave::absolute(TypeParam(-3)), TypeParam(3));
+  EXPECT_EQ(strainwave::absolute(TypeParam(3)), TypeParam(3));
+  EXPECT_TRUE(std::isnan(strainwave::absolute(std::numeric_limits<TypeParam>::quiet_NaN())));
+}
+
+TYPED_TEST(Arithmetic, CosSinOfFractionOverTheWholeTurn) {
+  // 2^22 fractions: every 1021st (a prime: all low bits occur) over the turn.
+  double worst = 0.0;
+  for (std::uint64_t fraction = 0; fraction < (std::uint64_t{1} << 32U); fraction += 1021) {
+    const auto pair = cos_sin_of_fraction<TypeParam>(static_cast<std::uint32_t>(fraction));
+    const long double angle =
+        static_cast<long double>(fraction) * 0x1p-32L * 6.283185307179586476925286766559005768L;
+    worst = std::max(worst, error_of_pair(pair, angle));
+  }
+  EXPECT_LT(worst, 1.0);
+  EXPECT_GT(worst, 0.25);  // a reference that agreed better would be the same code
+}
+
+TYPED_TEST(Arithmetic, QuartersOfATurnAreExact) {
+  const std::uint32_t quarter = 1U << 30U;
+  const int cosines[4] = {1, 0, -1, 0};
+  const int sines[4] = {0, 1, 0, -1};
+  for (std::uint32_t i = 0; i < 4; ++i) {
+    const auto pair = cos_sin_of_fraction<TypeParam>(i * quarter);
+    EXPECT_EQ(pair.cosine, TypeParam(cosines[i]));
+    EXPECT_EQ(pair.sine, TypeParam(sines[i]));
+  }
+}
+
+TYPED_TEST(Arithmetic, CosSinOfFractionIsContinuousWhereTheOctantsMeet) {
+  for (std::uint32_t octant = 0; octant < 8; ++octant) {
+    for (std::uint32_t offset = 0; offset < 5; ++offset) {
+      const std::uint32_t fraction = (octant << 29U) + offset - 2U;
+      const long double angle =
+          static_cast<long double>(fraction) * 0x1p-32L * 6.283185307179586476925286766559005768L;
+      EXPECT_LT(error_of_pair(cos_sin_of_fraction<TypeParam>(fraction), angle), 1.0) << fraction;
+    }
+  }
+}
+
+TYPED_TEST(Arithmetic, CosSinOfRadiansNearZero) {
+  double worst = 0.0;
+  for (int i = -200'000; i <= 200'000; ++i) {
+    const TypeParam angle = static_cast<TypeParam>(i) * TypeParam(6.4e-5);  // within +-12.8 rad
+    worst = std::max(worst, error_of_pair(cos_sin_of_radians(angle), angle));
+  }
+  EXPECT_LT(worst, 1.0);
+  EXPECT_GT(worst, 0.25);
+}
+
+TYPED_TEST(Arithmetic, CosSinOfRadiansOverItsWholeRange) {
+  const auto range = static_cast<TypeParam>(strainwave::largest_reducible_angle_rad);
+  double worst = 0.0;
+  for (int i = -500'000; i <= 500'000; ++i) {
+    const TypeParam angle = range * (static_cast<TypeParam>(i) / TypeParam(500'000));
+    worst = std::max(worst, error_of_pair(cos_sin_of_radians(angle), angle));
+  }
+  EXPECT_LT(worst, 1.5);
+}
+
+TYPED_TEST(Arithmetic, CosSinOfRadiansAtMultiplesOfAQuarterTurn) {
+  // The hardest angles for the reduction: nothing is left of them but its rounding.
+  double worst = 0.0;
+  for (int i = -63'000; i <= 63'000; ++i) {
+    const auto angle = static_cast<TypeParam>(1.5707963267948966192L * i);
+    worst = std::max(worst, error_of_pair(cos_sin_of_radians(angle), angle));
+  }
+  EXPECT_LT(worst, 1.5);
+}
+
+TYPED_TEST(Arithmetic, CosSinOfTinyAndZeroAngles) {
+  const TypeParam tiny = std::numeric_limits<TypeParam>::denorm_min();
+  EXPECT_EQ(cos_sin_of_radians(TypeParam(0)).cosine, TypeParam(1));
+  EXPECT_EQ(cos_sin_of_radians(TypeParam(0)).sine, TypeParam(0));
+  EXPECT_EQ(cos_sin_of_radians(tiny).sine, tiny);
+  EXPECT_EQ(cos_sin_of_radians(-tiny).sine, -tiny);
+}
+
+TYPED_TEST(Arithmetic, EvaluatesInConstantExpressions) {
+  static_assert(cos_sin_of_fraction<TypeParam>(1U << 31U).cosine == TypeParam(-1));
+  static_assert(cos_sin_of_radians(TypeParam(0)).cosine == TypeParam(1));
+}
+
+}  // namespace
