@@ -193,6 +193,7 @@ Config<double> published_and_protected() {
   const Config<double> standard;
   config.minimum_travel_rad = standard.minimum_travel_rad;
   config.variance_limit_ratio = standard.variance_limit_ratio;
+  config.minimum_speed_rad_s = standard.minimum_speed_rad_s;
   return config;
 }
 

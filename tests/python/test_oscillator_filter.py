@@ -265,6 +265,24 @@ def test_static_load_is_not_learned_while_the_encoder_dithers():
     assert result.torque_Nm[-1] == pytest.approx(10.0, abs=1.0)
 
 
+def test_static_load_is_not_learned_from_a_tachometers_noise():
+    """0.2 rad/s rms of noise travels 1 mrad in 25 samples, and goes nowhere."""
+    n = 600_000
+    speed = np.random.default_rng(2).normal(0.0, 0.2, n)
+    config = OscillatorFilterConfig(orders=[2, 4])
+    result = OscillatorFilter(config).process(np.full(n, 10.0), motor_speed_rad_s=speed)
+    assert result.torque_Nm[-1] == pytest.approx(10.0, abs=1e-9)
+
+
+def test_largest_variance_of_the_published_filter_at_full_speed():
+    """About a thousand times the process noise: far below the default's limit of 1e5."""
+    published = OscillatorFilter(oscillator_preset("taghirad1999", 100))
+    published.process(np.zeros(20_000), motor_speed_rad_s=np.full(20_000, 156.0))
+    _, covariance = published.predicted_state()
+    assert 300 < np.linalg.eigvalsh(covariance).max() / 1e3 < 3000
+    assert OscillatorFilterConfig(orders=[2]).variance_limit_ratio == 1e5
+
+
 def test_copy_and_reset():
     speed, torque, _ = recording("reversals", 1000)
     ours = OscillatorFilter(OscillatorFilterConfig(orders=[2, 4]))
