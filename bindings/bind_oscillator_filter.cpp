@@ -95,13 +95,7 @@ class Filter {
       require_same_length("motor_angle_rad", angle_rad->shape(0), "torque_Nm", size);
       rotation.angle_rad = angle_rad->data();
     }
-    const bool by_angle = config_.rotation_source == RotationSource::angle;
-    if (by_angle ? !angle_rad : !speed_rad_s) {
-      raise_input_error(by_angle
-                            ? "motor_angle_rad is missing: rotation_source is angle; give the array"
-                            : "motor_speed_rad_s is missing: rotation_source is speed; give the "
-                              "array");
-    }
+    require_rotation(config_.rotation_source, speed_rad_s, angle_rad);
     if (expected_Nm) {
       require_same_length("expected_torque_Nm", expected_Nm->shape(0), "torque_Nm", size);
     }

@@ -10,6 +10,17 @@ namespace strainwave::bindings {
 
 using OscillatorConfigD = OscillatorFilterConfig<double, most_orders>;
 
+/// Refuses a call without the array that the configuration turns by.
+template <class Speed, class Angle>
+void require_rotation(RotationSource source, const Speed& speed_rad_s, const Angle& angle_rad) {
+  if (source == RotationSource::angle && !angle_rad) {
+    raise_input_error("motor_angle_rad is missing: rotation_source is angle; give the array");
+  }
+  if (source == RotationSource::speed && !speed_rad_s) {
+    raise_input_error("motor_speed_rad_s is missing: rotation_source is speed; give the array");
+  }
+}
+
 /// Arrays of samples as the filter's step takes them; an absent one is null.
 template <class Real>
 struct RotationArrays {

@@ -123,13 +123,7 @@ class Sensor {
     take("expected_torque_Nm", expected_Nm, in.expected_Nm);
     take("temperature_degC", temperature_degC, in.temperature_degC);
     take("sequence", sequence, in.sequence);
-    const bool by_angle = config_.filter.rotation_source == RotationSource::angle;
-    if (by_angle ? !angle_rad : !speed_rad_s) {
-      raise_input_error(by_angle
-                            ? "motor_angle_rad is missing: rotation_source is angle; give the array"
-                            : "motor_speed_rad_s is missing: rotation_source is speed; give the "
-                              "array");
-    }
+    require_rotation(config_.filter.rotation_source, speed_rad_s, angle_rad);
     Outputs<Real> out(in.size);
     {
       const nb::gil_scoped_release release;

@@ -8,11 +8,11 @@ from pathlib import Path
 import pytest
 from tomlkit import TOMLDocument
 
+from helpers.elbow import FOLDER, GEAR, NOON, PROVENANCE, TEXT, elbow
 from strainwave.errors import ConfigurationError, InputError
 from strainwave.joint import (
     Gains,
     Gauges,
-    Gear,
     Joint,
     Misalignment,
     MisalignmentTerm,
@@ -26,18 +26,6 @@ from strainwave.joint import (
     read_joint,
     write_joint,
 )
-
-FOLDER = Path(__file__).parents[1] / "data/joints"
-TEXT = (FOLDER / "elbow.toml").read_text(encoding="utf-8")
-NOON = datetime(2026, 12, 1, 12, tzinfo=UTC)
-PROVENANCE = Provenance.by_hand(clock=lambda: NOON, version="0.2.0")
-GEAR = Gear(configuration="fixed_flexspline", ratio=51, rated_torque_Nm=90)
-
-
-def elbow(tmp_path: Path) -> Path:
-    path = tmp_path / "elbow.toml"
-    path.write_bytes(TEXT.encode())
-    return path
 
 
 def test_the_example_is_read_as_written() -> None:

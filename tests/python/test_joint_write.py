@@ -3,32 +3,18 @@
 import errno
 import os
 import stat
-from datetime import UTC, datetime
 from pathlib import Path
 
 import pytest
 
+from helpers.elbow import GEAR, PROVENANCE, TEXT, elbow
 from strainwave.errors import InputError
 from strainwave.joint import (
-    Gear,
     JointFile,
-    Provenance,
     new_joint,
     read_joint,
     write_joint,
 )
-
-FOLDER = Path(__file__).parents[1] / "data/joints"
-TEXT = (FOLDER / "elbow.toml").read_text(encoding="utf-8")
-NOON = datetime(2026, 12, 1, 12, tzinfo=UTC)
-PROVENANCE = Provenance.by_hand(clock=lambda: NOON, version="0.2.0")
-GEAR = Gear(configuration="fixed_flexspline", ratio=51, rated_torque_Nm=90)
-
-
-def elbow(tmp_path: Path) -> Path:
-    path = tmp_path / "elbow.toml"
-    path.write_bytes(TEXT.encode())
-    return path
 
 
 def changed(path: Path) -> JointFile:
