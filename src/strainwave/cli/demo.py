@@ -64,8 +64,8 @@ def demo(*, out: Path = Path("demo"), json: bool = False) -> None:
             entry.source,
             entry.quantity,
             f"{entry.published} {entry.unit}",
-            f"{entry.ours:.4g} {entry.unit}",
-            f"{entry.lowest:.4g} to {entry.highest:.4g}",
+            f"{entry.ours:.5g} {entry.unit}",
+            f"{entry.lowest:.5g} to {entry.highest:.5g}",
             "reproduced" if entry.reproduced else "MISSED",
         )
     console = result_console()

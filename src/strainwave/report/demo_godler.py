@@ -86,7 +86,7 @@ def godler_part(result: Godler2000, comparisons: dict[str, tuple[Comparison, ...
                 title="Figure 8 and M ≥ 2N + 1: how many gauges it takes",
                 paragraphs=(
                     "Each gauge's fluctuation is a vector, and a gain changes its length only. Two "
-                    "vectors close only if they lie on a line; three always can.",
+                    "vectors close only if they lie on a line; three can unless all lie on one.",
                 ),
                 figure=figures.vector_figure(result),
                 caption="Computed from the paper's amplitudes and phases: vectors of the basic "

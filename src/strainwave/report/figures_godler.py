@@ -22,7 +22,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from strainwave.reproduce.godler2000 import Build, Compensation, Godler2000, Phasor
+    from strainwave.reproduce.gauge_count import Phasor
+    from strainwave.reproduce.godler2000 import Build, Compensation, Godler2000
 
 _QUARTERS = (0, 90, 180, 270, 360)
 

@@ -17,13 +17,12 @@ from strainwave.calibrate.fluctuation import (
     FluctuationFit,
     compensating_gains,
     compensation_conditions,
-    enough_gauges,
     equally_spaced_positions_rad,
     fit_fluctuation,
-    minimum_gauges,
 )
 from strainwave.calibrate.torque import SensorGain, sensor_gain
 from strainwave.reproduce import published
+from strainwave.reproduce.gauge_count import GaugeCount, Phasor, gauge_counts, vectors
 from strainwave.simulate.presets.godler2000 import (
     RATED_TORQUE_NM,
     godler2000,
@@ -104,40 +103,6 @@ class Compensation:
     from_paper: CompensatingGains
     from_run: CompensatingGains
     sum_FS: NDArray[np.float64]
-
-
-@dataclass(frozen=True)
-class Phasor:
-    """One gauge's vector in the diagram of fig. 8.
-
-    Attributes
-    ----------
-    sine, cosine : float
-        What multiplies sin(2 m beta) and cos(2 m beta), times the gauge's gain.
-    """
-
-    sine: float
-    cosine: float
-
-
-@dataclass(frozen=True)
-class GaugeCount:
-    """Whether M gauges cancel N harmonics.
-
-    Attributes
-    ----------
-    gauges, harmonics : int
-        M and N.
-    enough : bool
-        Eq. (10).
-    solutions : int
-        Dimension of the null space of eq. (9) for careless gauges.
-    """
-
-    gauges: int
-    harmonics: int
-    enough: bool
-    solutions: int
 
 
 @dataclass(frozen=True)
@@ -268,36 +233,6 @@ def _compensation(three: Build) -> Compensation:
     return Compensation(from_paper, from_run, three.signals_FS @ from_run.gains)
 
 
-def _vectors(
-    amplitudes: tuple[float, ...], phases_rad: NDArray[np.float64], gains: NDArray[np.float64]
-) -> tuple[Phasor, ...]:
-    positions = equally_spaced_positions_rad(len(amplitudes))
-    matrix = compensation_conditions([amplitudes], phases_rad[np.newaxis], positions) * gains
-    return tuple(Phasor(float(sine), float(cosine)) for sine, cosine in matrix.T)
-
-
-def _gauge_counts() -> tuple[GaugeCount, ...]:
-    """Rank of eq. (9) for gauges bonded without care: 15 % and 10 degrees of scatter."""
-    generator = np.random.default_rng(2000)
-    counts = []
-    for harmonics in (1, 2, 3):
-        for gauges in (minimum_gauges(harmonics) - 1, minimum_gauges(harmonics)):
-            matrix = compensation_conditions(
-                generator.normal(1.0, 0.15, (harmonics, gauges)),
-                generator.normal(0.0, np.deg2rad(10.0), (harmonics, gauges)),
-                equally_spaced_positions_rad(gauges),
-            )
-            counts.append(
-                GaugeCount(
-                    gauges,
-                    harmonics,
-                    enough_gauges(gauges, harmonics),
-                    gauges - int(np.linalg.matrix_rank(matrix)),
-                )
-            )
-    return tuple(counts)
-
-
 def run() -> Godler2000:
     """Run all three builds and find the gains of the third.
 
@@ -322,9 +257,9 @@ def run() -> Godler2000:
         three=three,
         three_compensated=run_build(3, compensation.from_run.gains),
         compensation=compensation,
-        vectors_two=_vectors(published.THREE_GAUGE_AMPLITUDES[:2], phases_rad[:2], two_gains.gains),
-        vectors_three=_vectors(
+        vectors_two=vectors(published.THREE_GAUGE_AMPLITUDES[:2], phases_rad[:2], two_gains.gains),
+        vectors_three=vectors(
             published.THREE_GAUGE_AMPLITUDES, phases_rad, compensation.from_paper.gains
         ),
-        gauge_counts=_gauge_counts(),
+        gauge_counts=gauge_counts(),
     )

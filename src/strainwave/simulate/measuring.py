@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 import strainwave._core as core
 from strainwave.simulate.acquisition import Rows
+from strainwave.simulate.description import StationDescription
 from strainwave.simulate.faults import (
     Fault,
     FaultKind,
@@ -21,9 +21,6 @@ from strainwave.simulate.motion import Motion
 from strainwave.simulate.results import Run, Truth
 from strainwave.simulate.strain_field import FieldInputs, GaugePlacement, strain_at
 from strainwave.simulate.trajectories import FloatArray
-
-if TYPE_CHECKING:
-    from strainwave.simulate.station import Station
 
 
 @dataclass(frozen=True)
@@ -47,7 +44,10 @@ def _rosette(gauge: GaugePlacement) -> core.Rosette:
 
 
 def _gauge_strains(
-    station: Station, inputs: FieldInputs, instant_s: FloatArray, temperature_degC: FloatArray
+    station: StationDescription,
+    inputs: FieldInputs,
+    instant_s: FloatArray,
+    temperature_degC: FloatArray,
 ) -> _Gauges:
     """Strains along every gauge, with temperature and bonds that give way."""
     count = len(station.gauges)
@@ -75,13 +75,13 @@ def _gauge_strains(
     return _Gauges(first, second, fluctuation, sensed, rosettes)
 
 
-def _channel_faults(station: Station, channel: int) -> tuple[Fault, ...]:
+def _channel_faults(station: StationDescription, channel: int) -> tuple[Fault, ...]:
     shared = station.bridge.wiring == "full_bridge"
     return tuple(fault for fault in station.faults if shared or fault.gauge == channel)
 
 
 def _codes(
-    station: Station,
+    station: StationDescription,
     gauges: _Gauges,
     instant_s: FloatArray,
     generator: np.random.Generator,
@@ -111,7 +111,7 @@ def _codes(
     return codes
 
 
-def _fault_mask(station: Station, instant_s: FloatArray) -> NDArray[np.bool_]:
+def _fault_mask(station: StationDescription, instant_s: FloatArray) -> NDArray[np.bool_]:
     mask = np.zeros((len(instant_s), station.channel_count), dtype=bool)
     for channel in range(station.channel_count):
         for fault in _channel_faults(station, channel):
@@ -121,13 +121,13 @@ def _fault_mask(station: Station, instant_s: FloatArray) -> NDArray[np.bool_]:
 
 
 def measure(
-    station: Station, motion: Motion, rows: Rows, generators: list[np.random.Generator]
+    station: StationDescription, motion: Motion, rows: Rows, generators: list[np.random.Generator]
 ) -> Run:
     """Record a motion with a station's sensor and data acquisition.
 
     Parameters
     ----------
-    station : Station
+    station : StationDescription
         The station.
     motion : Motion
         What its mechanics did, on a grid finer than the rows.
