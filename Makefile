@@ -73,6 +73,10 @@ lock: ## Make requirements.lock anew from requirements.in (UPGRADE=1: with the n
 demo: $(VENV)/.package ## A simulated joint from gauges to a report, in demo/
 	$(BIN)/strainwave demo --out demo
 
+.PHONY: docs-images
+docs-images: demo ## The README's picture, made anew by the demo
+	cp demo/before-and-after.svg docs/images/
+
 .PHONY: test
 test: ## Every test but the slow ones; all are run even when one fails
 	@$(MAKE) --no-print-directory --keep-going test-core test-compile-fail test-usage test-python

@@ -2,9 +2,6 @@
 #include "strainwave/fluctuation.hpp"
 
 #include <nanobind/stl/pair.h>
-#include <nanobind/stl/vector.h>
-
-#include <vector>
 
 #include "common.hpp"
 
@@ -16,32 +13,24 @@ namespace {
 
 using Gauge = GaugeFluctuation<double, most_harmonics>;
 
-Gauge make_gauge(const std::vector<double>& amplitudes, const std::vector<double>& phase_errors_rad,
-                 double position_rad, const nb::handle& factor) {
+Gauge make_gauge(const nb::handle& amplitude_list, const nb::handle& phase_error_list,
+                 const nb::handle& position_rad, const nb::handle& factor) {
+  const auto amplitudes = to_vector<double>(amplitude_list, "amplitudes");
+  const auto phase_errors_rad = to_vector<double>(phase_error_list, "phase_errors_rad");
   require_same_length("phase_errors_rad", phase_errors_rad.size(), "amplitudes", amplitudes.size());
-  if (amplitudes.empty() || amplitudes.size() > most_harmonics) {
+  if (amplitudes.size() < 1 || amplitudes.size() > most_harmonics) {
     raise_input_error("amplitudes has " + std::to_string(amplitudes.size()) +
                       " elements: expected 1 to " + std::to_string(most_harmonics) +
-                      ", one a harmonic; shorten the list");
+                      ", one a harmonic; give a list of that length");
   }
   Gauge gauge;
   gauge.harmonic_count = amplitudes.size();
   for (std::size_t i = 0; i < amplitudes.size(); ++i) {
-    const auto index = static_cast<std::int32_t>(i);
-    if (!is_finite(amplitudes[i])) {
-      require(Violation<double>{"amplitudes", index, amplitudes[i], "", "a finite number"});
-    }
-    if (!is_representable_angle(phase_errors_rad[i])) {
-      require(Violation<double>{"phase_errors_rad", index, phase_errors_rad[i], "rad",
-                                "a finite angle"});
-    }
-    gauge.harmonics[i] = {amplitudes[i], phase_errors_rad[i]};
+    gauge.harmonics[i] = {amplitudes.data()[i], phase_errors_rad.data()[i]};
   }
-  if (!is_representable_angle(position_rad)) {
-    require(Violation<double>{"position_rad", -1, position_rad, "rad", "a finite angle"});
-  }
-  gauge.position_rad = position_rad;
+  gauge.position_rad = to_real_number(position_rad, "position_rad");
   gauge.wave_factor = to_valid_rational(factor, "wave_factor", "wave turns per motor turn");
+  require(check(gauge));
   return gauge;
 }
 
@@ -53,21 +42,21 @@ void bind_fluctuation(nb::module_& m) {
                     "Belanger 1999, eq. (2) and (3).")
       .def(
           "__init__",
-          [](Gauge* self, const std::vector<double>& amplitudes,
-             const std::vector<double>& phase_errors_rad, double position_rad,
-             const nb::handle& factor) {
+          [](Gauge* self, const nb::handle& amplitudes, const nb::handle& phase_errors_rad,
+             const nb::handle& position_rad, const nb::handle& factor) {
             new (self) Gauge(make_gauge(amplitudes, phase_errors_rad, position_rad, factor));
           },
-          nb::kw_only(), "amplitudes"_a, "phase_errors_rad"_a, "position_rad"_a = 0.0,
-          "wave_factor"_a = 1,
-          nb::sig("def __init__(self, *, amplitudes: Sequence[float], phase_errors_rad: "
-                  "Sequence[float], position_rad: float = 0.0, wave_factor: float | "
+          nb::kw_only(), "amplitudes"_a.none(), "phase_errors_rad"_a.none(),
+          "position_rad"_a.none() = 0.0, "wave_factor"_a.none() = 1,
+          nb::sig("def __init__(self, *, amplitudes: numpy.typing.ArrayLike, phase_errors_rad: "
+                  "numpy.typing.ArrayLike, position_rad: float = 0.0, wave_factor: float | "
                   "numbers.Rational | Rational = 1) -> None"),
           "amplitudes: a_ij of harmonics i = 1, 2, ... in any unit; phase_errors_rad: psi_ij in "
           "the sine form. position_rad counts against the wave-generator angle.")
       .def(
           "signal",
-          [](const Gauge& self, const Vector<double>& motor_angle_rad) {
+          [](const Gauge& self, const nb::handle& angles) {
+            const auto motor_angle_rad = to_vector<double>(angles, "motor_angle_rad");
             const std::size_t size = motor_angle_rad.shape(0);
             NewVector<double> out(size);
             double* const signal = out.data();
@@ -81,10 +70,15 @@ void bind_fluctuation(nb::module_& m) {
             }
             return out.give();
           },
-          "motor_angle_rad"_a, "e_j at wave-generator angles, rad; in the unit of the amplitudes.")
+          "motor_angle_rad"_a.none(),
+          nb::sig("def signal(self, motor_angle_rad: numpy.typing.ArrayLike) -> "
+                  "numpy.typing.NDArray[numpy.float64]"),
+          "e_j at wave-generator angles, rad; in the unit of the amplitudes.")
       .def(
           "phasor",
-          [](const Gauge& self, std::size_t harmonic) {
+          [](const Gauge& self, const nb::handle& value) {
+            const auto harmonic =
+                to_whole_number<std::size_t>(value, "harmonic", "a whole number from 1 on");
             if (harmonic < 1 || harmonic > self.harmonic_count) {
               raise_input_error("harmonic = " + std::to_string(harmonic) + ": expected 1 to " +
                                 std::to_string(self.harmonic_count) +
@@ -93,18 +87,26 @@ void bind_fluctuation(nb::module_& m) {
             const CosSin<double> phasor = fluctuation_phasor(self, harmonic - 1);
             return std::pair{phasor.cosine, phasor.sine};
           },
-          "harmonic"_a,
+          "harmonic"_a.none(), nb::sig("def phasor(self, harmonic: int) -> tuple[float, float]"),
           "What multiplies sin(2 i m beta) and cos(2 i m beta). Godler 2000, eq. (8).");
   m.def(
       "equally_spaced_position_rad",
-      [](std::size_t gauge, std::size_t count) {
+      [](const nb::handle& gauge_number, const nb::handle& number_of_gauges) {
+        const char* const whole = "a whole number from 1 on";
+        const auto gauge = to_whole_number<std::size_t>(gauge_number, "gauge", whole);
+        const auto count = to_whole_number<std::size_t>(number_of_gauges, "count", whole);
+        if (count < 1) {
+          raise_input_error("count = 0: expected at least 1 gauge; give the number of gauges");
+        }
         if (gauge < 1 || gauge > count) {
           raise_input_error("gauge = " + std::to_string(gauge) + ": expected 1 to " +
                             std::to_string(count) + ", the number of gauges; count from 1");
         }
         return equally_spaced_position_rad<double>(gauge, count);
       },
-      "gauge"_a, "count"_a, "pi (j - 1) / M, the position of gauge j of M, rad.");
+      "gauge"_a.none(), "count"_a.none(),
+      nb::sig("def equally_spaced_position_rad(gauge: int, count: int) -> float"),
+      "pi (j - 1) / M, the position of gauge j of M, rad.");
 }
 
 }  // namespace strainwave::bindings

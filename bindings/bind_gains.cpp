@@ -25,10 +25,11 @@ void bind_gains(nb::module_& m) {
   nb::class_<GainsD>(m, "Gains", "Per-gauge gains and their weighted sum.")
       .def(
           "__init__",
-          [](GainsD* self, const std::vector<double>& values) {
-            new (self) GainsD(make_gains(values));
+          [](GainsD* self, const nb::handle& list) {
+            const auto values = to_vector<double>(list, "gains");
+            new (self) GainsD(make_gains({values.data(), values.data() + values.size()}));
           },
-          "values"_a)
+          "values"_a.none(), nb::sig("def __init__(self, values: numpy.typing.ArrayLike) -> None"))
       .def_prop_ro("values",
                    [](const GainsD& self) {
                      return std::vector<double>(self.values, self.values + self.count);
@@ -37,7 +38,8 @@ void bind_gains(nb::module_& m) {
                    "M sum(g^2) / (sum g)^2: 1 for equal gains, never below.")
       .def(
           "weighted_sum",
-          [](const GainsD& self, const Matrix<double>& signals) {
+          [](const GainsD& self, const nb::handle& values) {
+            const auto signals = to_matrix<double>(values, "signals");
             require_same_length("signals' second axis", signals.shape(1), "the gains", self.count);
             NewVector<double> out(signals.shape(0));
             for (std::size_t k = 0; k < signals.shape(0); ++k) {
@@ -45,7 +47,9 @@ void bind_gains(nb::module_& m) {
             }
             return out.give();
           },
-          "signals"_a,
+          "signals"_a.none(),
+          nb::sig("def weighted_sum(self, signals: numpy.typing.ArrayLike) -> "
+                  "numpy.typing.NDArray[numpy.float64]"),
           "sum_j g_j e_j of signals with the shape (samples, gauges). Godler 2000, eq. (7).");
 }
 

@@ -40,9 +40,11 @@ void bind_gear(nb::module_& m) {
   nb::class_<Gear>(m, "Gear", "A strain wave gear.")
       .def(
           "__init__",
-          [](Gear* self, const nb::handle& ratio, GearConfiguration configuration,
+          [](Gear* self, const nb::handle& ratio, const nb::handle& configuration_name,
              double rated_torque_Nm, std::optional<int> output_direction) {
             Gear gear;
+            const auto configuration =
+                to_enum<GearConfiguration>(configuration_name, "configuration");
             gear.configuration = configuration;
             gear.ratio = to_valid_rational(ratio, "ratio", "motor turns per output turn");
             gear.rated_torque_Nm = rated_torque_Nm;
@@ -54,7 +56,7 @@ void bind_gear(nb::module_& m) {
           nb::kw_only(), "ratio"_a, "configuration"_a = GearConfiguration::fixed_circular_spline,
           "rated_torque_Nm"_a = Gear{}.rated_torque_Nm, "output_direction"_a = nb::none(),
           nb::sig("def __init__(self, *, ratio: float | numbers.Rational | Rational, "
-                  "configuration: GearConfiguration = ..., "
+                  "configuration: GearConfiguration | str = ..., "
                   "rated_torque_Nm: float = 40.0, output_direction: int | None = None) -> None"),
           "ratio is a magnitude, motor turns per output turn; the output's direction follows from "
           "the configuration unless given.")

@@ -30,7 +30,9 @@ struct Instance {
   OscillatorFilterState<Real, MaxOrders> state;
 
   explicit Instance(const OscillatorConfigD& from)
-      : config(converted<Real, MaxOrders>(from)), state(initial_state(config)) {}
+      : config(converted<Real, MaxOrders>(from)), state(initial_state(config)) {
+    require(check(config));  // what double holds may vanish or overflow in float
+  }
 
   void process(std::size_t size, const Real* torque_Nm, const Real* expected_Nm,
                const RotationArrays<Real>& rotation, Real* clean_Nm, Real* ripple_Nm,
@@ -222,11 +224,12 @@ void bind_oscillator_filter(nb::module_& m) {
           [](OscillatorConfigD* self, const nb::sequence& orders,
              const std::variant<double, std::vector<double>>& process_noise,
              double measurement_noise, double initial_variance, double sample_period_s,
-             RotationSource rotation_source, double minimum_travel_rad, double minimum_speed_rad_s,
-             double variance_limit_ratio) {
+             const nb::handle& rotation_source, double minimum_travel_rad,
+             double minimum_speed_rad_s, double variance_limit_ratio) {
             new (self) OscillatorConfigD(make_config(
                 orders, process_noise, measurement_noise, initial_variance, sample_period_s,
-                rotation_source, minimum_travel_rad, minimum_speed_rad_s, variance_limit_ratio));
+                to_enum<RotationSource>(rotation_source, "rotation_source"), minimum_travel_rad,
+                minimum_speed_rad_s, variance_limit_ratio));
           },
           nb::kw_only(), "orders"_a,
           "process_noise_variance_Nm2"_a = standard.process_noise_variance_Nm2[0],
@@ -241,7 +244,7 @@ void bind_oscillator_filter(nb::module_& m) {
                   "process_noise_variance_Nm2: float | Sequence[float] = ..., "
                   "measurement_noise_variance_Nm2: float = ..., "
                   "initial_variance_Nm2: float = ..., sample_period_s: float = ..., "
-                  "rotation_source: RotationSource = ..., minimum_travel_rad: float = ..., "
+                  "rotation_source: RotationSource | str = ..., minimum_travel_rad: float = ..., "
                   "minimum_speed_rad_s: float = ..., variance_limit_ratio: float = ...) -> None"),
           "orders in cycles per motor turn; process noise one for all or one an order. Protection "
           "at rest and crawl: minimum_travel_rad, minimum_speed_rad_s and variance_limit_ratio, 0 "

@@ -51,7 +51,9 @@ struct Instance {
   TorqueSensorState<Real, MaxGauges, MaxOrders> state;
 
   explicit Instance(const ConfigD& from)
-      : config(converted<Real, MaxGauges, MaxOrders>(from)), state(initial_state(config)) {}
+      : config(converted<Real, MaxGauges, MaxOrders>(from)), state(initial_state(config)) {
+    require(check(config));  // what double holds may vanish or overflow in float
+  }
 
   void process(const Inputs<Real>& in, Outputs<Real>& out) {
     TorqueSensorSample<MaxGauges, Real> sample;
@@ -67,9 +69,8 @@ struct Instance {
       if (in.temperature_degC != nullptr) {
         sample.temperature_degC = in.temperature_degC[k];
       }
-      sample.sequence = in.sequence != nullptr
-                            ? in.sequence[k]
-                            : state.last_sample.sequence + (state.started ? 1U : 0U);
+      sample.sequence_valid = in.sequence != nullptr;
+      sample.sequence = sample.sequence_valid ? in.sequence[k] : 0U;
       const TorqueReading<Real> reading = step(config, state, sample);
       out.measured_Nm.data()[k] = reading.torque_measured_Nm;
       out.clean_Nm.data()[k] = reading.torque_Nm;

@@ -154,6 +154,92 @@ inline Rational to_valid_rational(const nb::handle& value, const char* parameter
   return ratio;
 }
 
+/// A member of an enumeration, or its name.
+template <class Enum>
+Enum to_enum(const nb::handle& value, const char* parameter) {
+  Enum member{};
+  if (nb::try_cast(value, member)) {
+    return member;
+  }
+  std::string names;
+  for (const nb::handle each : nb::borrow(nb::type<Enum>())) {
+    const nb::object name = each.attr("name");
+    if (nb::isinstance<nb::str>(value) && name.equal(value)) {
+      return nb::cast<Enum>(each);
+    }
+    names += (names.empty() ? "" : " or ") + nb::cast<std::string>(name);
+  }
+  const nb::object type = nb::module_::import_("strainwave.errors").attr("ConfigurationError");
+  const nb::object error = type(parameter, nb::borrow(value), "", names);
+  PyErr_SetObject(type.ptr(), error.ptr());
+  throw nb::python_error();
+}
+
+/// Raises about a value that is not even of the right type: in one line, whatever was given.
+[[noreturn]] inline void raise_wrong_type(const char* parameter, const nb::handle& value,
+                                          const char* expected) {
+  const nb::object words = nb::steal(PyObject_Repr(value.ptr()));
+  PyErr_Clear();  // Python refuses to write out whole numbers of thousands of digits
+  const bool plain = value.is_none() || nb::isinstance<nb::str>(value) ||
+                     (PyNumber_Check(value.ptr()) != 0 && !nb::hasattr(value, "__len__"));
+  if (!plain || !words.is_valid() || nb::len(words) > 40) {
+    raise_input_error(std::string(parameter) + " is of type " +
+                      nb::cast<std::string>(value.type().attr("__name__")) + ": expected " +
+                      expected + "; give one");
+  }
+  const nb::object type = nb::module_::import_("strainwave.errors").attr("ConfigurationError");
+  const nb::object error = type(parameter, nb::borrow(value), "", expected);
+  PyErr_SetObject(type.ptr(), error.ptr());
+  throw nb::python_error();
+}
+
+/// A real number of Python's or numpy's, or an InputError naming the parameter.
+inline double to_real_number(const nb::handle& value, const char* parameter) {
+  const double number = PyFloat_AsDouble(value.ptr());
+  if (PyErr_Occurred() != nullptr) {
+    PyErr_Clear();
+    raise_wrong_type(parameter, value, "a number");
+  }
+  return number;
+}
+
+/// A whole number that the type holds, or an InputError naming the parameter.
+template <class Whole>
+Whole to_whole_number(const nb::handle& value, const char* parameter, const char* expected) {
+  Whole number{};
+  if (PyIndex_Check(value.ptr()) != 0) {
+    const nb::object whole = nb::steal(PyNumber_Index(value.ptr()));
+    PyErr_Clear();
+    if (whole.is_valid() && nb::try_cast(whole, number)) {
+      return number;
+    }
+  }
+  raise_wrong_type(parameter, value, expected);
+}
+
+/// An array-like in the form the core takes, by strainwave.arrays.contiguous: the caller's own
+/// memory where it has that form, a copy where it does not, an InputError where there is none.
+template <class Number, std::size_t Dimensions>
+auto to_array(const nb::handle& values, const char* name) {
+  static_assert(std::is_same_v<Number, double> || std::is_same_v<Number, std::int32_t>);
+  using Array = nb::ndarray<const Number, nb::ndim<Dimensions>, nb::c_contig, nb::device::cpu>;
+  const char* const precision = std::is_same_v<Number, double> ? "float64" : "int32";
+  return nb::cast<Array>(nb::module_::import_("strainwave.arrays")
+                             .attr("contiguous")(name, nb::borrow(values),
+                                                 nb::module_::import_("numpy").attr(precision),
+                                                 nb::arg("dimensions") = Dimensions));
+}
+
+template <class Number>
+Vector<Number> to_vector(const nb::handle& values, const char* name) {
+  return to_array<Number, 1>(values, name);
+}
+
+template <class Number>
+Matrix<Number> to_matrix(const nb::handle& values, const char* name) {
+  return to_array<Number, 2>(values, name);
+}
+
 void bind_units(nb::module_& m);
 void bind_status(nb::module_& m);
 void bind_gear(nb::module_& m);

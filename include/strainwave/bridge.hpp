@@ -219,8 +219,8 @@ template <class Real>
   if (!is_finite(converter.maximum_V) || converter.maximum_V <= converter.minimum_V) {
     return {"maximum_V", -1, converter.maximum_V, "V", "a finite number above minimum_V"};
   }
-  if (converter.lowest_code > (std::int32_t{1} << 24) ||
-      converter.lowest_code < -(std::int32_t{1} << 24)) {
+  const std::int32_t twos_complement = -(std::int32_t{1} << (converter.bits - 1));
+  if (converter.lowest_code != 0 && converter.lowest_code != twos_complement) {
     return {"lowest_code", -1, static_cast<Real>(converter.lowest_code), "",
             "0 (straight binary) or -2^(bits-1) (two's complement)"};
   }

@@ -68,6 +68,12 @@ template <class Real, class FromReal>
   return to;
 }
 
+/// True from absolute zero to 1000 degC.
+template <class Real>
+[[nodiscard]] constexpr bool is_temperature(Real temperature_degC) {
+  return temperature_degC >= Real(-273.15F) && temperature_degC <= Real(1000);
+}
+
 template <class Real>
 [[nodiscard]] constexpr Violation<Real> check(const TorqueCalibration<Real>& calibration) {
   if (!is_finite(calibration.gain_Nm_per_V) || !(absolute(calibration.gain_Nm_per_V) > Real(0))) {
@@ -86,24 +92,29 @@ template <class Real>
               "a finite number within +-1"};
     }
   }
-  if (!is_finite(calibration.reference_temperature_degC)) {
+  if (!is_temperature(calibration.reference_temperature_degC)) {
     return {"reference_temperature_degC", -1, calibration.reference_temperature_degC, "degC",
-            "a finite number"};
+            "a temperature from -273.15 to 1000"};
+  }
+  if (!is_temperature(calibration.minimum_temperature_degC)) {
+    return {"minimum_temperature_degC", -1, calibration.minimum_temperature_degC, "degC",
+            "a temperature from -273.15 to 1000"};
+  }
+  if (!is_temperature(calibration.maximum_temperature_degC) ||
+      calibration.maximum_temperature_degC <= calibration.minimum_temperature_degC) {
+    return {"maximum_temperature_degC", -1, calibration.maximum_temperature_degC, "degC",
+            "a temperature above minimum_temperature_degC and at most 1000"};
   }
   if (!is_finite(calibration.zero_drift_V_per_K)) {
     return {"zero_drift_V_per_K", -1, calibration.zero_drift_V_per_K, "V/K", "a finite number"};
   }
-  if (!is_finite(calibration.gain_drift_per_K)) {
-    return {"gain_drift_per_K", -1, calibration.gain_drift_per_K, "1/K", "a finite number"};
-  }
-  if (!is_finite(calibration.minimum_temperature_degC)) {
-    return {"minimum_temperature_degC", -1, calibration.minimum_temperature_degC, "degC",
-            "a finite number"};
-  }
-  if (!is_finite(calibration.maximum_temperature_degC) ||
-      calibration.maximum_temperature_degC <= calibration.minimum_temperature_degC) {
-    return {"maximum_temperature_degC", -1, calibration.maximum_temperature_degC, "degC",
-            "a finite number above minimum_temperature_degC"};
+  const Real drift = calibration.gain_drift_per_K;
+  const Real reference = calibration.reference_temperature_degC;
+  if (!is_finite(drift) ||
+      !(Real(1) + drift * (calibration.minimum_temperature_degC - reference) > Real(0)) ||
+      !(Real(1) + drift * (calibration.maximum_temperature_degC - reference) > Real(0))) {
+    return {"gain_drift_per_K", -1, drift, "1/K",
+            "a drift that leaves the gain its sign from minimum to maximum temperature"};
   }
   return {};
 }

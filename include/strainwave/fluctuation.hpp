@@ -10,7 +10,9 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <type_traits>
 
+#include "strainwave/status.hpp"
 #include "strainwave/units.hpp"
 
 namespace strainwave {
@@ -74,6 +76,32 @@ template <class Real, std::size_t MaxHarmonics>
                               phase_from_radians(harmonic.phase_error_rad).fraction;
   const CosSin<Real> unit = cos_sin_of_fraction<Real>(angle);
   return {harmonic.amplitude * unit.cosine, harmonic.amplitude * unit.sine};
+}
+
+template <class Real, std::size_t MaxHarmonics>
+[[nodiscard]] constexpr Violation<Real> check(const GaugeFluctuation<Real, MaxHarmonics>& gauge) {
+  if (gauge.harmonic_count < 1 || gauge.harmonic_count > MaxHarmonics) {
+    return {"harmonic_count", -1, static_cast<Real>(gauge.harmonic_count), "harmonics",
+            "at least one, and no more than the compiled capacity"};
+  }
+  for (std::size_t i = 0; i < gauge.harmonic_count; ++i) {
+    if (!is_finite(gauge.harmonics[i].amplitude)) {
+      return {"amplitudes", static_cast<std::int32_t>(i), gauge.harmonics[i].amplitude, "",
+              "a finite number"};
+    }
+    if (!is_representable_angle(gauge.harmonics[i].phase_error_rad)) {
+      return {"phase_errors_rad", static_cast<std::int32_t>(i), gauge.harmonics[i].phase_error_rad,
+              "rad", "a finite angle within +-6.9e12"};
+    }
+  }
+  if (!is_representable_angle(gauge.position_rad)) {
+    return {"position_rad", -1, gauge.position_rad, "rad", "a finite angle within +-6.9e12"};
+  }
+  if (!is_valid(gauge.wave_factor)) {
+    return {"wave_factor", -1, Real(0), "wave turns per motor turn",
+            "a ratio of whole numbers from 1 to 2^31 - 1"};
+  }
+  return {};
 }
 
 }  // namespace strainwave

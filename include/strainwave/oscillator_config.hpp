@@ -43,8 +43,8 @@ struct OscillatorFilterConfig {
   /// smoothed over 50 ms.  An encoder that dithers between two counts and the noise of a tachometer
   /// travel without moving.  0: off.
   Real minimum_speed_rad_s = Real(0.5);
-  /// Protection at crawl: no variance above this many times the order's process noise, nor above
-  /// the initial variance where that is more.  0: off.
+  /// Protection at crawl: no variance above the initial one plus this many times the order's
+  /// process noise.  0: off.
   Real variance_limit_ratio = Real(1e5);
 };
 

@@ -140,16 +140,21 @@ constexpr Status take_rotation(const OscillatorFilterConfig<Real, MaxOrders>& co
   return usable ? nyquist_status(config, rotation_rad) : mask(StatusFlag::rotation_invalid);
 }
 
-/// Applies the pending rotation without an update once it passes a turn, so that it stays small
-/// however many samples are rejected in a row.
+/// Longest rotation that waits for an update, rad.  A longer sum would lose the digits of a crawl's
+/// steps in float.
+inline constexpr float longest_pending_rotation_rad = 0.1F;
+
+/// Applies a long pending rotation without an update, so that it stays small however long samples
+/// are rejected or the motor crawls.
 template <class Real, std::size_t MaxOrders>
 constexpr void apply_long_rotation(const OscillatorFilterConfig<Real, MaxOrders>& config,
                                    OscillatorFilterState<Real, MaxOrders>& state) {
-  if (absolute(state.pending_rotation_rad) > two_pi<Real>) {
+  if (absolute(state.pending_rotation_rad) > static_cast<Real>(longest_pending_rotation_rad)) {
     CosSin<Real> turns[MaxOrders] = {};
     turns_since_frame(config, state, Phase{}, turns);
     rotate(active_orders(config), state, turns);
     state.pending_rotation_rad = Real(0);
+    state.rotated_without_update = true;
   }
 }
 
@@ -217,13 +222,15 @@ inline OscillatorReading<Real> step(const OscillatorFilterConfig<Real, MaxOrders
 
   const Real travel_rad =
       by_angle ? to_radians<Real>(now - state.frame) : state.pending_rotation_rad;
-  const bool moving = absolute(travel_rad) >= config.minimum_travel_rad &&
-                      absolute(state.smoothed_speed_rad_s) >= config.minimum_speed_rad_s;
+  const bool moving =
+      (state.rotated_without_update || absolute(travel_rad) >= config.minimum_travel_rad) &&
+      absolute(state.smoothed_speed_rad_s) >= config.minimum_speed_rad_s;
   if (!torque_usable || !expected_usable || !angle_known) {
     detail::count_up_to(state.samples_without_update, 1);
     detail::apply_long_rotation(config, state);
   } else if (!moving) {
     reading.status |= mask(StatusFlag::at_rest);
+    detail::apply_long_rotation(config, state);
   } else {
     detail::rotate(active_orders(config), state, turns);
     state.frame = now;
@@ -231,6 +238,7 @@ inline OscillatorReading<Real> step(const OscillatorFilterConfig<Real, MaxOrders
     reading.status |= detail::update(
         config, state, sample.measured_torque_Nm - sample.expected_torque_Nm - reading.ripple_Nm);
     state.samples_without_update = 0;
+    state.rotated_without_update = false;
   }
   if (!by_angle) {
     reading.status |= detail::take_rotation(config, state, sample.motor_speed_rad_s);

@@ -25,6 +25,7 @@ struct OscillatorFilterState {
   Real covariance_Nm2[max_states * (max_states + 1) / 2] = {};
   /// Rotation of the motor since the frame of `states_Nm`, applied with the next update.
   Real pending_rotation_rad = Real(0);
+  bool rotated_without_update = false;  ///< part of the rotation was applied since the last update
   Phase frame = {};  ///< motor phase of `states_Nm`, used with RotationSource::angle
   bool frame_known = false;
   std::uint32_t samples_without_update = 0;  ///< rejected or missing since the last update
@@ -87,8 +88,8 @@ inline bool limit_variance(const OscillatorFilterConfig<Real, MaxOrders>& config
   Real* const p = state.covariance_Nm2;
   const std::size_t state_count = 2 * active_orders(config);
   for (std::size_t a = 0; a < active_orders(config); ++a) {
-    Real limit = config.variance_limit_ratio * config.process_noise_variance_Nm2[a];
-    limit = limit > config.initial_variance_Nm2 ? limit : config.initial_variance_Nm2;
+    const Real limit = config.initial_variance_Nm2 +
+                       config.variance_limit_ratio * config.process_noise_variance_Nm2[a];
     const Real first = p[packed_index(2 * a, 2 * a)];
     const Real second = p[packed_index(2 * a + 1, 2 * a + 1)];
     const Real larger = first > second ? first : second;

@@ -14,9 +14,9 @@ namespace strainwave {
 
 /// One bit each.  Bits 0-11 are faults, 12-19 limits, 20-31 warnings.
 enum class StatusFlag : std::uint32_t {
-  torque_not_finite = 1U << 0U,           ///< fault: torque is NaN or infinite
+  torque_not_finite = 1U << 0U,           ///< fault: torque is NaN, infinite or beyond 1e15 Nm
   rotation_invalid = 1U << 1U,            ///< fault: speed or angle NaN, infinite or beyond reach
-  expected_torque_not_finite = 1U << 2U,  ///< fault: expected torque is NaN or infinite
+  expected_torque_not_finite = 1U << 2U,  ///< fault: expected torque, likewise
   gauge_saturated = 1U << 3U,             ///< fault: a converter code at an end of its range
   temperature_not_finite = 1U << 4U,      ///< fault: temperature is NaN or infinite
   sample_repeated = 1U << 5U,             ///< fault: the sample was seen before

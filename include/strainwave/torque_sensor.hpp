@@ -40,6 +40,9 @@ struct TorqueSensorSample {
   /// Counts samples as the converter took them; wraps at 32 bits.  The same number again is a
   /// repeated sample, a larger step a gap.
   std::uint32_t sequence = 0;
+  /// False where the caller has no sample numbers: a sample then counts as held where codes, phase
+  /// and speed are those of the last one although the motor turns.
+  bool sequence_valid = true;
 };
 
 template <class Real>
@@ -74,8 +77,8 @@ template <class Real, std::size_t MaxGauges, std::size_t MaxOrders>
 /// or has started again: the sensor goes on with it.
 inline constexpr std::uint32_t most_older_in_a_row = 10;
 
-/// Travel from one sample to the next from which on equal content is a held sample, rad.  At less
-/// even a good encoder may stand and the ripple may stay within a code.
+/// Travel from one sample to the next from which on an encoder that stands is a held sample, rad;
+/// some counts of a coarse one.
 inline constexpr float least_travel_of_a_new_sample_rad = 0.01F;
 
 namespace detail {
@@ -95,12 +98,10 @@ template <std::size_t MaxGauges, class Real>
       return false;
     }
   }
-  // One channel keeps its code by chance at the top of a ripple; several at once do not.
-  if (gauge_count > 1) {
-    return true;
-  }
-  return a.phase_valid && b.phase_valid ? a.motor_phase == b.motor_phase
-                                        : a.motor_speed_rad_s == b.motor_speed_rad_s;
+  // Equal codes prove nothing, a coarse converter repeats them; an encoder that stands while the
+  // motor turns does.
+  return a.phase_valid && b.phase_valid && a.motor_phase == b.motor_phase &&
+         a.motor_speed_rad_s == b.motor_speed_rad_s;
 }
 
 [[nodiscard]] constexpr Succession succession(std::uint32_t last, std::uint32_t now) {
@@ -132,7 +133,10 @@ inline TorqueReading<Real> step(const TorqueSensorConfig<Real, MaxGauges, MaxOrd
   TorqueReading<Real> reading = state.last_reading;
   reading.status = 0;
   if (state.started) {
-    detail::Succession next = detail::succession(state.last_sample.sequence, sample.sequence);
+    detail::Succession next;
+    if (sample.sequence_valid && state.last_sample.sequence_valid) {
+      next = detail::succession(state.last_sample.sequence, sample.sequence);
+    }
     if (has(next.status, StatusFlag::sample_out_of_order)) {
       if (++state.older_in_a_row > most_older_in_a_row) {
         next = {mask(StatusFlag::samples_missing), most_older_in_a_row};
@@ -147,7 +151,8 @@ inline TorqueReading<Real> step(const TorqueSensorConfig<Real, MaxGauges, MaxOrd
     skip(config.filter, state.filter, next.missing);
     const Real travel_rad =
         absolute(state.filter.smoothed_speed_rad_s) * config.filter.sample_period_s;
-    if (!saturated && travel_rad >= static_cast<Real>(least_travel_of_a_new_sample_rad) &&
+    if (!sample.sequence_valid && !saturated &&
+        travel_rad >= static_cast<Real>(least_travel_of_a_new_sample_rad) &&
         detail::same_content(gauge_count, sample, state.last_sample)) {
       // Held by the acquisition: time has passed, but nothing was measured.
       reading.status |= mask(StatusFlag::sample_repeated);

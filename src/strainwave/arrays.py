@@ -38,24 +38,27 @@ def contiguous(
     Raises
     ------
     InputError
-        If the values are no numbers or have another number of axes.
+        If the values are no numbers, are masked or have another number of axes.
     """
+    axes = f"{dimensions} {'axis' if dimensions == 1 else 'axes'}"
+    if _has_masked_entries(values):
+        raise InputError(
+            f"{name} has masked entries: expected an array of numbers without a mask; fill them "
+            "(numpy.ma.filled) or leave them out (numpy.ma.compressed)"
+        )
     try:
         array = np.asarray(values)
     except ValueError as error:
         raise InputError(
-            f"{name} has rows of different lengths: expected an array of numbers with "
-            f"{dimensions} axes; make the rows equally long"
+            f"{name} has rows of different lengths: expected an array of numbers with {axes}; "
+            "make the rows equally long"
         ) from error
     if array.dtype.kind not in "fiub":
         raise InputError(
             f"{name} holds {array.dtype} values: expected real numbers; convert them first"
         )
     if array.ndim != dimensions:
-        raise InputError(
-            f"{name} has the shape {array.shape}: expected {dimensions} "
-            f"{'axis' if dimensions == 1 else 'axes'}; reshape the array"
-        )
+        raise InputError(f"{name} has the shape {array.shape}: expected {axes}; reshape the array")
     if np.dtype(dtype).kind in "iu":
         _require_whole(name, array, dtype)
     # What float32 cannot hold becomes infinite, which the sample path rejects and counts.
@@ -112,6 +115,13 @@ def precision(dtype: DTypeLike) -> type[np.float64] | type[np.float32]:
     if named == np.float32:
         return np.float32
     raise InputError(f"dtype = {dtype!r}: expected float64 or float32; choose one of them")
+
+
+def _has_masked_entries(values: object) -> bool:
+    if isinstance(values, np.ma.MaskedArray):
+        return bool(np.ma.is_masked(values))
+    # numpy drops the masks of a list's rows, too.
+    return isinstance(values, list | tuple) and any(map(_has_masked_entries, values))
 
 
 def _require_whole(name: str, array: NDArray[Any], dtype: type[np.generic]) -> None:

@@ -10,6 +10,8 @@ from strainwave.errors import InputError
 from strainwave.joint import order_value
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from strainwave.joint import Joint
     from strainwave.joint.provenance import Section
 
@@ -146,6 +148,32 @@ def sensor_of(joint: Joint) -> _core.TorqueSensorConfig:
     InputError
         If a section or the converter is missing.
     """
+    return _core.TorqueSensorConfig(
+        converter=converter_of(joint),
+        gains=gains_of(joint),
+        calibration=calibration_of(joint),
+        filter=oscillator_filter_of(joint),
+    )
+
+
+def converter_of(joint: Joint) -> _core.Converter:
+    """Build the converter of a joint.
+
+    Parameters
+    ----------
+    joint : Joint
+        A joint with a section ``[gauges]`` that describes its converter.
+
+    Returns
+    -------
+    Converter
+        Bits, range and lowest code.
+
+    Raises
+    ------
+    InputError
+        If the section or the converter is missing.
+    """
     gauges = _required(joint, "gauges", joint.gauges)
     if (
         gauges.converter_bits is None
@@ -156,17 +184,68 @@ def sensor_of(joint: Joint) -> _core.TorqueSensorConfig:
             f'joint "{joint.identity.name}": [gauges] has no converter; expected converter_bits, '
             "converter_minimum_V and converter_maximum_V to read codes with, so add them"
         )
-    gains = [1.0] * gauges.channel_count if joint.gains is None else list(joint.gains.gains)
-    return _core.TorqueSensorConfig(
-        converter=_core.Converter(
-            bits=gauges.converter_bits,
-            minimum_V=gauges.converter_minimum_V,
-            maximum_V=gauges.converter_maximum_V,
-        ),
-        gains=_core.Gains(gains),
-        calibration=calibration_of(joint),
-        filter=oscillator_filter_of(joint),
+    return _core.Converter(
+        bits=gauges.converter_bits,
+        minimum_V=gauges.converter_minimum_V,
+        maximum_V=gauges.converter_maximum_V,
+        lowest_code=gauges.converter_lowest_code,
     )
+
+
+def gains_of(joint: Joint) -> _core.Gains:
+    """Build the gains of a joint; without a section ``[gains]`` they are all 1.
+
+    Parameters
+    ----------
+    joint : Joint
+        A joint with a section ``[gains]`` or ``[gauges]``.
+
+    Returns
+    -------
+    Gains
+        One a channel.
+
+    Raises
+    ------
+    InputError
+        If both sections are missing.
+    """
+    if joint.gains is not None:
+        return _core.Gains(list(joint.gains.gains))
+    return _core.Gains([1.0] * _required(joint, "gauges", joint.gauges).channel_count)
+
+
+def verify(joint: Joint) -> None:
+    """Build everything that a joint's sections describe, and keep none of it.
+
+    The joint file checks that its values belong together; only the core knows what it can compute
+    with. A file that passes both can be used.
+
+    Parameters
+    ----------
+    joint : Joint
+        Any joint; sections that are missing are passed over.
+
+    Raises
+    ------
+    InputError
+        If a section cannot be used; the message begins with its name.
+    """
+    has_converter = joint.gauges is not None and joint.gauges.converter_bits is not None
+    needs_gear = joint.gear is not None
+    builders: tuple[tuple[str, bool, Callable[[Joint], object]], ...] = (
+        ("gear", joint.gear is not None, gear_of),
+        ("gauges", has_converter, converter_of),
+        ("gains", joint.gains is not None, gains_of),
+        ("torque_calibration", joint.torque_calibration is not None and needs_gear, calibration_of),
+        ("ripple_filter", joint.ripple_filter is not None, oscillator_filter_of),
+    )
+    for name, is_present, build in builders:
+        if is_present:
+            try:
+                build(joint)
+            except InputError as error:
+                raise InputError(f"[{name}] {error}") from error
 
 
 def _required(joint: Joint, name: str, section: SectionType | None) -> SectionType:

@@ -47,9 +47,7 @@ class ConfigurationError(InputError):
         self.allowed = allowed
         self.advice = advice
         shown_unit = "" if unit in ("", "1") else f" {unit}"
-        super().__init__(
-            f"{parameter} = {value!r}{shown_unit}: expected {allowed}{shown_unit}; {advice}"
-        )
+        super().__init__(f"{parameter} = {value!r}{shown_unit}: expected {allowed}; {advice}")
 
     def __reduce__(self) -> tuple[type[ConfigurationError], tuple[str, object, str, str, str]]:
         return (

@@ -19,6 +19,10 @@ from strainwave.errors import InputError
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
+#: Longest run of a filter under test; more would not fit into memory.
+MOST_SAMPLES: Final = 50_000_000
+#: The delay comes from two frequencies that lie this share to either side.
+SPREAD: Final = 0.005
 #: Gain below which a delay says nothing.
 SMALLEST_GAIN_WITH_DELAY: Final = 1e-3
 
@@ -135,13 +139,21 @@ def complex_gain(
     -------
     complex
         Output over input at that frequency.
+
+    Raises
+    ------
+    InputError
+        If a parameter is out of range or the filter's output is not finite.
     """
+    _require_rate(motor_speed_rad_s, sample_period_s)
+    _require_number("settling_s", settling_s, "s")
+    _require_frequencies([frequency_Hz], sample_period_s, spread=0.0)
     periods = max(4, int(np.ceil(2.0 * frequency_Hz)))
-    settling = round(settling_s / sample_period_s)
-    samples = settling + round(periods / frequency_Hz / sample_period_s)
+    settling = _samples("settling_s", settling_s, sample_period_s)
+    samples = settling + _samples("one over frequency_Hz", periods / frequency_Hz, sample_period_s)
     time_s = sample_period_s * np.arange(samples)
     turning = 2 * np.pi * frequency_Hz * time_s
-    output = removes_ripple(np.sin(turning), np.full(samples, motor_speed_rad_s))
+    output = _run(removes_ripple, np.sin(turning), motor_speed_rad_s)
     basis = np.column_stack(
         [np.sin(turning[settling:]), np.cos(turning[settling:]), np.ones(samples - settling)]
     )
@@ -164,7 +176,8 @@ def pass_through(
     removes_ripple : RemovesRipple
         The filter, run anew for every frequency.
     frequencies_Hz : array_like
-        Frequencies, shape (frequencies,), Hz, between 0 and half the sampling rate.
+        Frequencies, shape (frequencies,), Hz, above 0 and at least 0.5 % below half the sampling
+        rate.
     motor_speed_rad_s : float
         Motor speed, rad/s.
     sample_period_s : float
@@ -180,23 +193,15 @@ def pass_through(
     Raises
     ------
     InputError
-        If a frequency or the sample period is out of range.
+        If a parameter is out of range or the filter's output is not finite.
     """
-    frequencies = contiguous("frequencies_Hz", frequencies_Hz, np.float64)
-    if not np.isfinite(sample_period_s) or sample_period_s <= 0:
-        raise InputError(
-            f"sample_period_s = {sample_period_s}: expected a finite number above 0; give it in s"
-        )
-    highest_Hz = 0.5 / sample_period_s
-    if len(frequencies) == 0 or not np.all((frequencies > 0) & (frequencies < highest_Hz)):
-        raise InputError(
-            f"frequencies_Hz = {frequencies.tolist()}: expected frequencies above 0 and below "
-            f"{highest_Hz:g} Hz, half the sampling rate; choose others"
-        )
+    _require_rate(motor_speed_rad_s, sample_period_s)
+    _require_number("settling_s", settling_s, "s")
+    frequencies = _require_frequencies(frequencies_Hz, sample_period_s, spread=SPREAD)
     gains = np.empty(len(frequencies))
     delays = np.empty(len(frequencies))
     for n, frequency_Hz in enumerate(frequencies):
-        spread = (frequency_Hz * 0.995, frequency_Hz, frequency_Hz * 1.005)
+        spread = (frequency_Hz * (1 - SPREAD), frequency_Hz, frequency_Hz * (1 + SPREAD))
         below, here, above = (
             complex_gain(
                 removes_ripple,
@@ -241,13 +246,90 @@ def contact_step(
     Returns
     -------
     StepResponse
-        Output from 0.02 s before the contact.
+        Output from 0.02 s before the contact, or from the start where that is later.
+
+    Raises
+    ------
+    InputError
+        If a parameter is out of range or the filter's output is not finite.
     """
-    before = round(before_s / sample_period_s)
-    after = round(after_s / sample_period_s)
+    _require_rate(motor_speed_rad_s, sample_period_s)
+    _require_number("contact_torque_Nm", contact_torque_Nm, "Nm", lowest=-np.inf)
+    _require_number("before_s", before_s, "s")
+    _require_number("after_s", after_s, "s", lowest=sample_period_s)
+    before = _samples("before_s", before_s, sample_period_s)
+    after = _samples("after_s", after_s, sample_period_s)
     torque = np.zeros(before + after)
     torque[before:] = contact_torque_Nm
-    output = removes_ripple(torque, np.full(len(torque), motor_speed_rad_s))
-    shown = slice(before - round(0.02 / sample_period_s), None)
-    time_s = sample_period_s * (np.arange(len(torque)) - before)
-    return StepResponse(np.asarray(time_s[shown], np.float64), output[shown], contact_torque_Nm)
+    output = _run(removes_ripple, torque, motor_speed_rad_s)
+    first = max(0, before - round(0.02 / sample_period_s))
+    time_s = sample_period_s * (np.arange(len(torque), dtype=np.float64) - before)
+    return StepResponse(time_s[first:], output[first:], contact_torque_Nm)
+
+
+def _run(
+    removes_ripple: RemovesRipple, torque_Nm: NDArray[np.float64], motor_speed_rad_s: float
+) -> NDArray[np.float64]:
+    output = contiguous(
+        "the filter's output",
+        removes_ripple(torque_Nm, np.full(len(torque_Nm), float(motor_speed_rad_s))),
+        np.float64,
+    )
+    if output.shape != torque_Nm.shape or not np.all(np.isfinite(output)):
+        raise InputError(
+            f"the filter's output has {len(output)} samples, {np.sum(~np.isfinite(output))} of "
+            f"them not finite: expected {len(torque_Nm)} numbers; correct the filter or its tuning"
+        )
+    return output
+
+
+def _require_rate(motor_speed_rad_s: float, sample_period_s: float) -> None:
+    _require_number("motor_speed_rad_s", motor_speed_rad_s, "rad/s", lowest=-np.inf)
+    _require_number("sample_period_s", sample_period_s, "s", lowest=np.finfo(np.float64).tiny)
+
+
+def _require_frequencies(
+    frequencies_Hz: ArrayLike, sample_period_s: float, *, spread: float
+) -> NDArray[np.float64]:
+    frequencies = contiguous("frequencies_Hz", frequencies_Hz, np.float64)
+    highest_Hz = 0.5 / sample_period_s
+    wrong = ~((frequencies > 0) & ((1 + spread) * frequencies < highest_Hz))
+    if len(frequencies) == 0 or np.any(wrong):
+        found = f"holds {frequencies[wrong][0]:g} Hz" if np.any(wrong) else "is empty"
+        besides = f" with {spread:.1%} to spare for the delay" if spread else ""
+        raise InputError(
+            f"frequencies_Hz {found}: expected frequencies above 0 and below {highest_Hz:g} Hz, "
+            f"half the sampling rate{besides}; choose others"
+        )
+    return frequencies
+
+
+def _require_number(name: str, value: object, unit: str, *, lowest: float = 0.0) -> None:
+    shown = f"a {type(value).__name__}"
+    if isinstance(value, int | float | np.integer | np.floating):
+        try:
+            real = float(value)
+        except OverflowError:
+            real = np.inf
+        if np.isfinite(real) and real >= lowest:
+            return
+        shown = f"{real:g}"
+    elif isinstance(value, str):
+        shown = repr(value)
+    if lowest == -np.inf:
+        least = ""
+    elif lowest > 1e-300:
+        least = f" of at least {lowest:g}, one sample"
+    else:
+        least = " of at least 0" if lowest == 0 else " above 0"
+    raise InputError(f"{name} = {shown}: expected a finite number{least}; give it in {unit}")
+
+
+def _samples(name: str, time_s: float, sample_period_s: float) -> int:
+    samples = time_s / sample_period_s
+    if samples > MOST_SAMPLES:
+        raise InputError(
+            f"{name} = {time_s:g} s is {samples:.3g} samples: expected at most {MOST_SAMPLES} "
+            f"samples of {sample_period_s:g} s; choose a shorter time or a longer sample_period_s"
+        )
+    return round(samples)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from copy import copy
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -93,6 +92,11 @@ class OscillatorFilter:
         dtype: DTypeLike = np.float64,
         least_capacity: int = 1,
     ) -> None:
+        if not isinstance(config, _core.OscillatorFilterConfig):
+            raise InputError(
+                f"config = {config!r}: expected an OscillatorFilterConfig; make one, or take a "
+                "published one from oscillator_preset(name)"
+            )
         self._dtype = precision(dtype)
         self._filter = _core.OscillatorFilter(
             config,
@@ -185,6 +189,15 @@ class OscillatorFilter:
         OscillatorFilter
             The copy.
         """
-        twin = copy(self)
-        twin._filter = self._filter.copy()  # noqa: SLF001 - of the same class
+        twin = object.__new__(type(self))
+        twin.__dict__.update(self.__dict__)
+        twin._filter = self._filter.copy()
         return twin
+
+    def __copy__(self) -> OscillatorFilter:
+        """Copy like `copy`: two objects never share a state."""
+        return self.copy()
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> OscillatorFilter:
+        """Copy like `copy`."""
+        return self.copy()

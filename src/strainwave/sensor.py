@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from copy import copy
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -10,6 +9,7 @@ import numpy as np
 
 from strainwave import _core
 from strainwave.arrays import contiguous, optional_contiguous, precision
+from strainwave.errors import InputError
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, DTypeLike, NDArray
@@ -49,6 +49,11 @@ class TorqueSensor:
     """
 
     def __init__(self, config: _core.TorqueSensorConfig, *, dtype: DTypeLike = np.float64) -> None:
+        if not isinstance(config, _core.TorqueSensorConfig):
+            raise InputError(
+                f"config = {config!r}: expected a TorqueSensorConfig; make one, or take that of a "
+                "joint file from strainwave.configuration.sensor_of(joint)"
+            )
         self._dtype = precision(dtype)
         self._sensor = _core.TorqueSensor(config, single_precision=self._dtype is np.float32)
 
@@ -127,6 +132,15 @@ class TorqueSensor:
         TorqueSensor
             The copy.
         """
-        twin = copy(self)
-        twin._sensor = self._sensor.copy()  # noqa: SLF001 - of the same class
+        twin = object.__new__(type(self))
+        twin.__dict__.update(self.__dict__)
+        twin._sensor = self._sensor.copy()
         return twin
+
+    def __copy__(self) -> TorqueSensor:
+        """Copy like `copy`: two objects never share a state."""
+        return self.copy()
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> TorqueSensor:
+        """Copy like `copy`."""
+        return self.copy()

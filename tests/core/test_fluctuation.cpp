@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
 #include "strainwave/gear.hpp"
 
@@ -208,5 +209,39 @@ TEST(Fluctuation, StaysInPhaseAfterAYearAt3000Rpm) {
               signal_fluctuation(gauge, {0, fraction}));
   }
 }
+
+TYPED_TEST(Fluctuation, CheckAcceptsWhatTheModelTakes) {
+  EXPECT_TRUE(check(GaugeFluctuation<TypeParam, 4>{}).ok());
+  auto gauge = gauge_at<TypeParam>(-720, -1.3, 0, {51, 50});
+  gauge.harmonic_count = 4;
+  EXPECT_TRUE(check(gauge).ok());
+  gauge.harmonic_count = 1;
+  gauge.harmonics[1].amplitude = std::numeric_limits<TypeParam>::quiet_NaN();  // not in use
+  EXPECT_TRUE(check(gauge).ok());
+}
+
+TYPED_TEST(Fluctuation, CheckNamesWhatIsWrong) {
+  const auto expect = [](auto change, const char* parameter, int index) {
+    auto gauge = gauge_at<TypeParam>(45, 1.3, 0.2, {51, 50});
+    change(gauge);
+    const auto violation = check(gauge);
+    ASSERT_FALSE(violation.ok()) << parameter;
+    EXPECT_STREQ(violation.parameter, parameter);
+    EXPECT_EQ(violation.index, index);
+  };
+  const TypeParam nan = std::numeric_limits<TypeParam>::quiet_NaN();
+  const TypeParam infinity = std::numeric_limits<TypeParam>::infinity();
+  expect([](auto& gauge) { gauge.harmonic_count = 0; }, "harmonic_count", -1);
+  expect([](auto& gauge) { gauge.harmonic_count = 5; }, "harmonic_count", -1);
+  expect([&](auto& gauge) { gauge.harmonics[1].amplitude = infinity; }, "amplitudes", 1);
+  expect([&](auto& gauge) { gauge.harmonics[0].phase_error_rad = nan; }, "phase_errors_rad", 0);
+  expect([](auto& gauge) { gauge.harmonics[1].phase_error_rad = TypeParam(1e13); },
+         "phase_errors_rad", 1);
+  expect([](auto& gauge) { gauge.position_rad = TypeParam(-1e13); }, "position_rad", -1);
+  expect([](auto& gauge) { gauge.wave_factor = {0, 1}; }, "wave_factor", -1);
+  expect([](auto& gauge) { gauge.wave_factor = {1, 0x80000000U}; }, "wave_factor", -1);
+}
+
+static_assert(check(GaugeFluctuation<float, 1>{}).ok(), "checked while compiling");
 
 }  // namespace

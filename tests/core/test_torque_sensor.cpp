@@ -138,6 +138,7 @@ TYPED_TEST(TorqueSensor, HeldSampleIsFlaggedAndTimeGoesOn) {
     (void)this->next();
     auto held = sample_at(this->config, this->k - 1);
     held.sequence = static_cast<std::uint32_t>(this->k);
+    held.sequence_valid = false;  // rows are counted, not conversions
     EXPECT_TRUE(has(this->take(held).status, StatusFlag::sample_repeated));
     this->expect_clean(this->next());
   }
@@ -173,6 +174,42 @@ TYPED_TEST(TorqueSensor, OlderSampleIsIgnored) {
   EXPECT_EQ(reading.status, strainwave::mask(StatusFlag::sample_out_of_order));
   EXPECT_EQ(reading.torque_Nm, before.torque_Nm);
   this->expect_clean(this->next());
+}
+
+TYPED_TEST(TorqueSensor, TenOlderSamplesAreIgnoredAndTheEleventhIsANewCount) {
+  this->settle();
+  for (int i = 0; i < 11; ++i) {
+    auto sample = sample_at(this->config, this->k);
+    sample.sequence = static_cast<std::uint32_t>(i);  // the counter has started again
+    const auto reading = this->take(sample);
+    EXPECT_EQ(has(reading.status, StatusFlag::sample_out_of_order), i < 10) << i;
+    EXPECT_EQ(has(reading.status, StatusFlag::samples_missing), i == 10) << i;
+  }
+}
+
+TYPED_TEST(TorqueSensor, FreshSamplesOfACoarseConverterAreNoFaults) {
+  // 12 bits, no noise, 30 rad/s: most codes are those of the sample before.
+  auto coarse = this->config;
+  coarse.converter = {12, TypeParam(-10), TypeParam(10), 0};
+  for (const bool numbered : {true, false}) {
+    auto started = strainwave::initial_state(coarse);
+    int faults = 0;
+    for (int n = 0; n < 4000; ++n) {
+      Sample<TypeParam> sample;
+      const double angle_rad = 0.03 * n;
+      const auto volts = static_cast<TypeParam>(2.0 + 0.02 * std::sin(2.0 * angle_rad));
+      for (std::size_t j = 0; j < coarse.gains.count; ++j) {
+        sample.codes[j] = strainwave::to_code(coarse.converter, volts);
+      }
+      sample.motor_speed_rad_s = TypeParam(30);
+      sample.motor_phase = strainwave::phase_from_counts(
+          static_cast<std::int64_t>(std::floor(angle_rad / 6.283185307179586 * 4096.0)), 4096);
+      sample.sequence = static_cast<std::uint32_t>(n);
+      sample.sequence_valid = numbered;
+      faults += (strainwave::step(coarse, started, sample).status & strainwave::fault_mask) != 0U;
+    }
+    EXPECT_EQ(faults, 0) << numbered;
+  }
 }
 
 TYPED_TEST(TorqueSensor, SequenceWrapsAt32Bits) {

@@ -65,6 +65,17 @@ def test_what_single_precision_cannot_hold_is_infinite_without_a_warning():
     np.testing.assert_array_equal(made, [np.inf, -np.inf, 1.0])
 
 
+def test_masked_entries_are_not_lost():
+    masked = np.ma.array([1.0, 2.0], mask=[False, True])
+    for values in (masked, [masked, masked], ([1.0, np.ma.masked],)):
+        with pytest.raises(InputError, match="torque_Nm has masked entries: expected") as caught:
+            contiguous("torque_Nm", values, np.float64)
+        assert "\n" not in str(caught.value)
+    for mask in (np.ma.nomask, [False, False]):
+        unmasked = np.ma.array([1.0, 2.0], mask=mask)
+        np.testing.assert_array_equal(contiguous("a", unmasked, np.float64), [1, 2])
+
+
 def test_optional():
     assert optional_contiguous("a", None, np.float64) is None
     array = np.zeros(3)

@@ -102,15 +102,41 @@ def test_consistency_has_no_unit(gains: list[float], factor: float) -> None:
     )
 
 
+def test_consistency_of_negative_and_of_huge_gains() -> None:
+    plain = consistency([6.5, 6.7])
+    mirrored = consistency(np.array([-6.5, -6.7]))
+    assert mirrored.gain_Nm_per_V == -plain.gain_Nm_per_V
+    assert mirrored.consistency == pytest.approx(plain.consistency, rel=1e-12)
+    assert consistency([1e308, 1e308]).gain_Nm_per_V == pytest.approx(1e308)
+
+
+def test_weak_but_real_gains_are_fitted() -> None:
+    fit = sensor_gain([0.0, 1e-6, 2e-6], [5.0, 5.001, 5.002], intercept=True)
+    assert fit.gain_Nm_per_V == pytest.approx(1e3, rel=1e-6)
+
+
 @pytest.mark.parametrize(
     ("call", "words"),
     [
-        (lambda: sensor_gain([], []), "not independent"),
-        (lambda: sensor_gain([0.0, 0.0], [1.0, 2.0]), "not independent"),
-        (lambda: sensor_gain([1.0, 1.0], [1.0, 2.0], intercept=True), "not independent"),
-        (lambda: sensor_gain([1.0, 2.0], [1.0]), "measurements has 1 elements: expected 2"),
-        (lambda: sensor_gain([1.0, np.nan], [1.0, 2.0]), "matrix is not finite in row 1"),
-        (lambda: sensor_gain([1.0, 2.0], [np.inf, 2.0]), "measurements is not finite in row 0"),
+        (lambda: sensor_gain([], []), "volts has no value other than 0 in 0 measurements"),
+        (lambda: sensor_gain([0.0, 0.0], [1.0, 2.0]), "volts has no value other than 0"),
+        (lambda: sensor_gain([1, 1], [1, 2], intercept=True), "volts has the same value in all 2"),
+        (lambda: sensor_gain([0, 1], [0, 0], intercept=True), "torque_Nm has the same value"),
+        (lambda: sensor_gain([0, 1], [0, 0]), "torque_Nm has no value other than 0"),
+        (lambda: sensor_gain([0, 1, 2], [1, 2, 1], intercept=True), "does not follow volts"),
+        (lambda: sensor_gain([1, -1], [1, 1]), "does not follow volts"),
+        (lambda: sensor_gain([1.0, 2.0], [1.0]), "torque_Nm has 1 elements: expected 2"),
+        (lambda: sensor_gain([1.0, np.nan], [1.0, 2.0]), "volts is not finite in row 1"),
+        (lambda: sensor_gain([1.0, 2.0], [np.inf, 2.0]), "torque_Nm is not finite in row 0"),
+        (lambda: least_squares([[1.0], [2.0]], [1.0]), "measurements has 1 elements: expected 2"),
+        (lambda: least_squares([[np.inf]], [1.0]), "matrix is not finite in row 0"),
+        (lambda: least_squares([[1e300], [1e300]], [1e-300, 1e300]), "range of double precision"),
+        (lambda: pseudo_inverse([[np.nan]]), "matrix is not finite in row 0"),
+        (lambda: pseudo_inverse(np.zeros((0, 0))), "0 rows and 0 columns"),
+        (lambda: pseudo_inverse([[1, 1], [2, 2]]), "not independent.*fit fewer parameters"),
+        (lambda: consistency([np.nan, 1]), "gains_Nm_per_V is not finite in row 0"),
+        (lambda: consistency([1, -1]), "expected gains of one sign"),
+        (lambda: consistency([1, 0]), "expected gains of one sign"),
         (lambda: sensor_gain(["a", "b"], [1.0, 2.0]), "volts holds"),
         (lambda: consistency([6.6]), "expected at least 2"),
     ],

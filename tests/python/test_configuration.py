@@ -6,7 +6,13 @@ import numpy as np
 import pytest
 
 import strainwave as sw
-from strainwave.configuration import calibration_of, gear_of, oscillator_filter_of, sensor_of
+from strainwave.configuration import (
+    calibration_of,
+    gear_of,
+    oscillator_filter_of,
+    sensor_of,
+    verify,
+)
 from strainwave.errors import InputError
 from strainwave.joint import Joint, parse_joint, read_joint
 
@@ -83,3 +89,51 @@ def test_a_missing_converter_is_named() -> None:
     lines = [line for line in TEXT.splitlines() if not line.startswith("converter_")]
     with pytest.raises(InputError, match="no converter; expected converter_bits"):
         sensor_of(parse_joint("\n".join(lines)).joint)
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "words"),
+    [
+        ("orders = [2, 4,", "orders = [2, 4000,", None),
+        (
+            "sample_period_s = 0.001",
+            "sample_period_s = 0.001\nvariance_limit_ratio = 5.0",
+            r"\[ripple_filter\] variance_limit_ratio = 5.0: expected 0 \(off\) or at least 100",
+        ),
+        (
+            "[1.0586, 0.9966, 0.9448]",
+            "[1.0, -1.0, 0.0]",
+            r"\[gains\] gains = 0.0: expected a finite sum other than 0",
+        ),
+        (
+            "measurement_noise_variance_Nm2 = 1.0",
+            "measurement_noise_variance_Nm2 = 1e-35",
+            r"\[ripple_filter\] measurement_noise_variance_Nm2",
+        ),
+        (
+            "converter_bits = 16",
+            "converter_bits = 16\nconverter_lowest_code = -5",
+            r"\[gauges\] lowest_code = -5.0: expected 0 \(straight binary\) or",
+        ),
+    ],
+)
+def test_values_that_the_core_cannot_use_are_found(
+    before: str, after: str, words: str | None
+) -> None:
+    assert before in TEXT
+    if words is None:
+        with pytest.raises(InputError):
+            parse_joint(TEXT.replace(before, after))
+        return
+    with pytest.raises(InputError, match=words):
+        verify(parse_joint(TEXT.replace(before, after)).joint)
+
+
+def test_a_drift_that_turns_the_gain_around_is_found() -> None:
+    line = next(line for line in TEXT.splitlines() if line.startswith("gain_drift_per_K"))
+    with pytest.raises(InputError, match="leaves the gain its sign"):
+        verify(parse_joint(TEXT.replace(line, "gain_drift_per_K = -0.5")).joint)
+
+
+def test_the_documented_joint_can_be_used(joint: Joint) -> None:
+    verify(joint)

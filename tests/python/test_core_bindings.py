@@ -250,6 +250,109 @@ def test_signal_refuses_angles_that_are_none():
         strainwave.equally_spaced_position_rad(4, 3)
 
 
+ROSETTE = Rosette()
+CONVERTER = _core.Converter()
+GAUGE = GaugeFluctuation(amplitudes=(1.0,), phase_errors_rad=np.zeros(1, np.float32))
+CALIBRATION = TorqueCalibration(gain_Nm_per_V=2)
+WIDE = np.arange(12, dtype=np.float32).reshape(3, 4)
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        lambda form: ROSETTE.strain(form([1, 2]), form([3, 4]), form([5, 6])),
+        lambda form: ROSETTE.half_bridge_V(form([1, 2]), form([3, 4]), np.float32(5)),
+        lambda form: _core.full_bridge_V((ROSETTE, ROSETTE), form([[1, 2]]), form([[3, 4]]), 10),
+        lambda form: _core.Amplifier(gain=2).amplified_V(form([1, 2])),
+        lambda form: CONVERTER.to_code(form([1, 2])),
+        lambda form: CONVERTER.to_volts(form([1, 2])),
+        lambda form: CONVERTER.is_saturated(form([0, 2])),
+        lambda form: CALIBRATION.torque_Nm(form([1, 2]), form([20, 30])),
+        lambda form: GAUGE.signal(form([1, 2])),
+        lambda form: _core.Gains(form([1, 2])).weighted_sum(form([[1, 2], [3, 4]])),
+    ],
+)
+def test_array_likes_are_what_contiguous_arrays_are(call):
+    expected = call(lambda values: np.array(values, np.float64))
+    for form in (
+        list,
+        lambda values: np.array(values, np.float32),
+        lambda values: np.array(values, np.int64),
+        np.asfortranarray,
+        lambda values: np.repeat(np.array(values, float), 2, axis=-1)[..., ::2],
+    ):
+        np.testing.assert_array_equal(call(form), expected)
+
+
+@pytest.mark.parametrize(
+    ("call", "words"),
+    [
+        (lambda: ROSETTE.strain(1.0, [2], [3]), "radial has the shape (): expected 1 axis"),
+        (lambda: ROSETTE.strain([1], None, [3]), "circumferential holds object values"),
+        (lambda: ROSETTE.strain([1], [2], [3, 4]), "shear has 2 elements: expected 1"),
+        (lambda: ROSETTE.half_bridge_V([1], ["a"], 5), "second holds <U1 values"),
+        (lambda: ROSETTE.half_bridge_V([1], [1], None), "supply_V = None: expected a number"),
+        (lambda: ROSETTE.half_bridge_V([1], [1], np.nan), "supply_V = nan V: expected a finite"),
+        (lambda: _core.full_bridge_V([1], WIDE, WIDE, 5), "rosettes is of type list: expected a"),
+        (lambda: _core.full_bridge_V([ROSETTE] * 4, [1], WIDE, 5), "first has the shape (1,)"),
+        (lambda: Rosette(radius_m="a"), "radius_m = 'a': expected a number"),
+        (lambda: Rosette(radius_m=np.zeros(99)), "radius_m is of type ndarray: expected a number"),
+        (lambda: Rosette(radius_m=10**5000), "radius_m is of type int: expected a number"),
+        (lambda: Rosette(gauge_factor=0), "gauge_factor = 0.0: expected"),
+        (lambda: _core.Amplifier(gain=None), "gain = None: expected a number"),
+        (lambda: _core.Amplifier().amplified_V([[1]]), "input_V has the shape (1, 1)"),
+        (lambda: _core.Converter(bits=-1), "bits = -1: expected a whole number, 1 to 24"),
+        (lambda: _core.Converter(bits=16.5), "bits = 16.5: expected a whole number, 1 to 24"),
+        (lambda: _core.Converter(bits=25), "bits = 25.0: expected 1 to 24"),
+        (lambda: _core.Converter(lowest_code="a"), "lowest_code = 'a': expected a whole number"),
+        (lambda: CONVERTER.to_code(WIDE), "input_V has the shape (3, 4)"),
+        (lambda: CONVERTER.to_volts([0.5]), "codes holds values that are no whole numbers"),
+        (lambda: CONVERTER.is_saturated([2**31]), "codes reaches from 2147483648"),
+        (lambda: CALIBRATION.torque_Nm([1], 20), "temperature_degC has the shape ()"),
+        (lambda: TorqueCalibration(gain_Nm_per_V="a"), "gain_Nm_per_V = 'a': expected a number"),
+        (
+            lambda: TorqueCalibration(gain_Nm_per_V=1, linearisation=[0.0] * 5),
+            "linearisation has 5 elements: expected at most 4",
+        ),
+        (lambda: _core.Gains("ab"), "gains holds <U2 values: expected real numbers"),
+        (lambda: _core.Gains([]), "gains has 0 elements: expected 1 to 32"),
+        (lambda: _core.Gains([1, 2]).weighted_sum([1, 2]), "signals has the shape (2,)"),
+        (lambda: _core.Gains([1, 2]).weighted_sum(WIDE), "signals' second axis has 4 elements"),
+        (lambda: GAUGE.signal("a"), "motor_angle_rad holds <U1 values"),
+        (lambda: GAUGE.phasor(-1), "harmonic = -1: expected a whole number"),
+        (lambda: GAUGE.phasor(1.5), "harmonic = 1.5: expected a whole number"),
+        (lambda: GAUGE.phasor(2), "harmonic = 2: expected 1 to 1"),
+        (lambda: strainwave.equally_spaced_position_rad(1, 0), "count = 0: expected at least 1"),
+        (lambda: strainwave.equally_spaced_position_rad(1, 2.5), "count = 2.5: expected a whole"),
+        (
+            lambda: GaugeFluctuation(amplitudes=[], phase_errors_rad=[]),
+            "amplitudes has 0 elements: expected 1 to 16",
+        ),
+        (
+            lambda: GaugeFluctuation(amplitudes=[1], phase_errors_rad=[0], position_rad=1e300),
+            "position_rad = 1e+300 rad: expected a finite angle within",
+        ),
+    ],
+)
+def test_wrong_values_get_one_sentence(call, words):
+    with pytest.raises(InputError) as caught:
+        call()
+    assert str(caught.value).startswith(words)
+    assert "expected" in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+def test_defaults_of_the_stub_are_those_of_the_core():
+    """Signatures that are written out, because None must reach the check that refuses it."""
+    stub = pathlib.Path(_core.__file__).parent.joinpath("_core.pyi").read_text(encoding="utf-8")
+    for part in (ROSETTE, _core.Amplifier(), CONVERTER, CALIBRATION):
+        text = stub[stub.index(f"class {type(part).__name__}:") :]
+        defaults = re.findall(r"(\w+): (?:float|int) = ([-\d.]+)", text[: text.index("-> None")])
+        assert len(defaults) >= 3
+        for name, value in defaults:
+            assert getattr(part, name) == float(value)
+
+
 def test_copies_are_independent():
     ours = OscillatorFilter(OscillatorFilterConfig(orders=[2]))
     twin = ours.copy()

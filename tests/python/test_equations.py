@@ -62,8 +62,11 @@ def test_t1_rosette_strains():
 
 def test_t2_difference_of_the_first_rosette():
     wave = 4e-5 * np.sin(2 * BETA)
-    first, second = Rosette().strain(7e-4 * np.cos(2 * BETA), np.zeros(401), 3e-4 + wave)
-    np.testing.assert_allclose(first - second, 2 * 1.5e-4 + wave, rtol=0, atol=1e-18)
+    rosette = Rosette(gauge_factor=2.1)
+    first, second = rosette.strain(7e-4 * np.cos(2 * BETA), np.zeros(401), 3e-4 + wave)
+    # What a half bridge answers to, K/4 of it times the supply.
+    difference = rosette.half_bridge_V(first, second, 10.0) / (2.1 / 4 * 10.0)
+    np.testing.assert_allclose(difference, 2 * 1.5e-4 + wave, rtol=0, atol=1e-18)
 
 
 def test_t3_second_rosette_is_opposite():

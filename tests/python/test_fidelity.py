@@ -110,14 +110,76 @@ def test_a_delay_is_measured() -> None:
     assert measured.delay_s == pytest.approx(3e-3, rel=1e-6)
 
 
-def test_bad_input_gets_one_sentence() -> None:
-    run = removes_ripple(lambda: oscillator_preset("taghirad1999-4"))
-    with pytest.raises(InputError, match="half the sampling rate"):
-        pass_through(run, [600.0], motor_speed_rad_s=10.0)
-    with pytest.raises(InputError, match="half the sampling rate"):
-        pass_through(run, [np.nan], motor_speed_rad_s=10.0)
-    with pytest.raises(InputError, match="sample_period_s"):
-        pass_through(run, [1.0], motor_speed_rad_s=10.0, sample_period_s=0.0)
+def untouched(torque, _speed):  # type: ignore[no-untyped-def]
+    return torque
+
+
+def test_contact_without_time_before_it_starts_with_the_contact() -> None:
+    response = contact_step(untouched, motor_speed_rad_s=1.0, before_s=0.0, after_s=0.003)
+    assert response.time_s == pytest.approx([0.0, 0.001, 0.002])
+    assert np.all(response.torque_Nm == 10.0)
+    short = contact_step(untouched, motor_speed_rad_s=1.0, before_s=0.01, after_s=0.001)
+    assert short.time_s[0] == pytest.approx(-0.01)
+    usual = contact_step(untouched, motor_speed_rad_s=1.0, contact_torque_Nm=-3.0)
+    assert usual.time_s[0] == pytest.approx(-0.02)
+    assert usual.torque_Nm[0] == 0.0
+    assert usual.at(0.01) == -3.0
+
+
+def test_the_highest_frequency_leaves_room_for_the_delay() -> None:
+    measured = pass_through(untouched, [497.5], motor_speed_rad_s=1.0)
+    assert measured.gain == pytest.approx(1.0, abs=1e-9)
+    with pytest.raises(InputError, match="below 500 Hz, half the sampling rate"):
+        pass_through(untouched, [497.6], motor_speed_rad_s=1.0)
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ({"frequencies_Hz": [600.0]}, "holds 600 Hz: expected.*half the sampling rate"),
+        ({"frequencies_Hz": [1.0, 499.0]}, "holds 499 Hz: expected.*half the sampling rate"),
+        ({"frequencies_Hz": [np.nan]}, "half the sampling rate"),
+        ({"frequencies_Hz": [0.0]}, "half the sampling rate"),
+        ({"frequencies_Hz": []}, "frequencies_Hz is empty"),
+        ({"frequencies_Hz": [1e-9]}, "samples: expected at most"),
+        ({"sample_period_s": 0.0}, "sample_period_s = 0: expected"),
+        ({"sample_period_s": np.nan}, "sample_period_s = nan: expected"),
+        ({"motor_speed_rad_s": np.nan}, "motor_speed_rad_s = nan: expected a finite number;"),
+        ({"motor_speed_rad_s": "fast"}, "motor_speed_rad_s = 'fast': expected"),
+        ({"settling_s": -1.0}, "settling_s = -1: expected a finite number of at least 0"),
+        ({"settling_s": 1e9}, "settling_s = 1e.09 s is 1e.12 samples: expected at most"),
+    ],
+)
+def test_bad_input_of_pass_through_gets_one_sentence(options, words) -> None:  # type: ignore[no-untyped-def]
+    with pytest.raises(InputError, match=words) as caught:
+        pass_through(untouched, **{"frequencies_Hz": [1.0], "motor_speed_rad_s": 1.0} | options)
+    assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ({"sample_period_s": 0.0}, "sample_period_s = 0: expected"),
+        ({"sample_period_s": -1e-3}, "sample_period_s = -0.001: expected"),
+        ({"before_s": np.nan}, "before_s = nan: expected"),
+        ({"before_s": -1.0}, "before_s = -1: expected a finite number of at least 0"),
+        ({"after_s": 0.0}, "after_s = 0: expected a finite number of at least 0.001"),
+        ({"after_s": np.inf}, "after_s = inf: expected"),
+        ({"after_s": 1e9}, "samples: expected at most"),
+        ({"contact_torque_Nm": np.nan}, "contact_torque_Nm = nan: expected"),
+        ({"motor_speed_rad_s": None}, "motor_speed_rad_s = a NoneType: expected"),
+    ],
+)
+def test_bad_input_of_contact_step_gets_one_sentence(options, words) -> None:  # type: ignore[no-untyped-def]
+    with pytest.raises(InputError, match=words) as caught:
+        contact_step(untouched, **{"motor_speed_rad_s": 1.0} | options)
+    assert "\n" not in str(caught.value)
+
+
+def test_a_filter_that_gives_nonsense_is_refused() -> None:
+    for wrong in (lambda torque, _: torque * np.nan, lambda torque, _: torque[1:]):
+        with pytest.raises(InputError, match="the filter's output has"):
+            pass_through(wrong, [1.0], motor_speed_rad_s=1.0)
 
 
 def test_filter_is_fresh_at_every_call() -> None:

@@ -234,9 +234,7 @@ def test_values_from_a_person() -> None:
 
 def test_configuration_error_names_value_unit_and_range() -> None:
     error = ConfigurationError("memory_turns", -2.0, "turns", "a number greater than 0")
-    expected = (
-        "memory_turns = -2.0 turns: expected a number greater than 0 turns; correct this value"
-    )
+    expected = "memory_turns = -2.0 turns: expected a number greater than 0; correct this value"
     assert str(error) == expected
     assert isinstance(error, InputError)
     assert isinstance(error, StrainwaveError)

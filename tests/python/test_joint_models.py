@@ -199,7 +199,7 @@ def test_orders() -> None:
     with pytest.raises(ValueError, match="needs the ratio of the gear"):
         order_value("1/R", None)
     for wrong in ("R", "0/1", "1/0", "1.5/3", "1/R ", -2, 0, True, math.inf, math.nan):
-        with pytest.raises(ValueError, match="expected a positive number of cycles"):
+        with pytest.raises(ValueError, match="expected a number of cycles per motor turn above 0"):
             order_value(wrong, 100.0)
 
 

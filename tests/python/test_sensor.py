@@ -156,14 +156,23 @@ def test_wild_streams_give_finite_torque_and_are_forgotten(seed):
     assert np.abs(after.torque_Nm[6000:] - fresh.torque_Nm[6000:]).max() < 0.01
 
 
-def test_held_samples_are_found_without_an_encoder_too():
-    """Two gauges of 16 bits do not both keep their codes while the joint turns by 17 degrees."""
+def test_held_rows_are_found_by_an_encoder_that_stands():
+    codes, arrays = recording(3000, 3)
+    codes[2001:2004] = codes[2000]
+    arrays["motor_angle_rad"][2001:2004] = arrays["motor_angle_rad"][2000]
+    result = TorqueSensor(sensor_config()).process(codes, **arrays)
+    repeated = (result.status & StatusFlag.sample_repeated.value) != 0
+    assert np.flatnonzero(repeated).tolist() == [2001, 2002, 2003]
+
+
+def test_equal_codes_alone_are_no_fault():
+    """Without an encoder or sample numbers nothing tells a held row from a quiet one."""
     codes, arrays = recording(3000, 3)
     codes[2001:2004] = codes[2000]
     result = TorqueSensor(sensor_config()).process(
         codes, motor_speed_rad_s=arrays["motor_speed_rad_s"]
     )
-    assert (result.status[2001:2004] & StatusFlag.sample_repeated.value).all()
+    assert not np.any(result.status & StatusFlag.sample_repeated.value)
 
 
 def test_one_wrong_sequence_number_does_not_stop_the_sensor():

@@ -154,6 +154,19 @@ def test_fluctuation_grows_with_load_and_speed_as_stated():
     assert np.angle(phasor(50.0, -40.0) / base) == pytest.approx(-0.3, abs=1e-3)
 
 
+@pytest.mark.parametrize("torque_Nm", [-30.0, 12.0])
+def test_uneven_torque_strain_is_a_share_of_the_torques_own(torque_Nm):
+    field = (WaveHarmonic(0.0), WaveHarmonic(0.0, phase_rad=0.4, torque_share=0.05))
+    made = station(2, field)
+    angle = np.linspace(0.0, math.pi, 7)
+    loaded = [made.hold(PiecewiseLinear((0.0,), (torque_Nm,)), 0.002, 1, each) for each in angle]
+    read = np.array([run.truth.sensed_torque_Nm[0] for run in loaded])
+    # Two gauges at 90 degrees both meet four cycles a turn in the same phase.
+    np.testing.assert_allclose(read / torque_Nm, 1 + 0.05 * np.sin(4 * angle + 0.4), rtol=1e-12)
+    unloaded = made.rotate(constant_speed(20.0, 0.0), 0.5, 1).truth.sensing_ripple_Nm
+    np.testing.assert_array_equal(unloaded, 0.0)
+
+
 def test_misalignment_repeats_with_the_output_and_is_not_transmitted():
     terms = (MisalignmentTerm(1.0, 5.0), MisalignmentTerm(4.0, 1.0))
     run = station(misalignment=Misalignment(terms)).rotate(
@@ -260,8 +273,10 @@ def test_amplifier_ends_at_its_rails():
         (lambda: station().hold(PiecewiseLinear((0.0,), (1.0,)), 1.0, -1), "seed"),
         (
             lambda: station().hold(PiecewiseLinear((0.0,), (1.0,)), 1.0, 1, math.inf),
-            "start_angle_rad",
+            "position_rad",
         ),
+        (lambda: WaveHarmonic(0.0, torque_share=-0.1), "torque_share"),
+        (lambda: WaveHarmonic(0.0, torque_share=1.1), "torque_share"),
     ],
 )
 def test_impossible_station_is_refused_by_name(build, parameter):

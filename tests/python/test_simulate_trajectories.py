@@ -11,8 +11,10 @@ from strainwave.errors import ConfigurationError
 from strainwave.simulate import (
     NOTHING,
     Chirp,
+    CurrentCommand,
     PiecewiseLinear,
     Sine,
+    SpeedCommand,
     Sum,
     constant_speed,
     loading_sequence,
@@ -98,6 +100,8 @@ def test_profile_stays_between_its_points(pairs):
         (lambda: up_and_down(1.0, 0), "steps"),
         (lambda: loading_sequence([1.0, math.nan]), "torques_Nm"),
         (lambda: loading_sequence([]), "values"),
+        (lambda: CurrentCommand(1.0), "current"),
+        (lambda: SpeedCommand(None), "motor_speed"),
     ],
 )
 def test_impossible_profile_is_refused_by_name(build, parameter):

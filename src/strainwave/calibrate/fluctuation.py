@@ -1,24 +1,28 @@
-"""Signal fluctuation: from a recording of all gauges to the gains that cancel it.
+"""Signal fluctuation: from a recording of all gauges to the conditions under which it cancels.
 
 Amplitudes and phase errors of each gauge's harmonics come from a least-squares fit against the
-wave-generator angle; gains that make their weighted sum vanish are the null space of Godler's
-conditions. Godler et al. 2000, section III.
+wave-generator angle; what gains have to fulfil follows from them. Godler et al. 2000, section III.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from strainwave import _core
 from strainwave.arrays import contiguous
+from strainwave.calibrate.checks import real_number, require_finite, whole_number
 from strainwave.calibrate.torque import least_squares
 from strainwave.errors import InputError
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
+
+
+#: Largest angle of which the core can tell the phase, 2^40 turns.
+LARGEST_ANGLE_RAD: Final = 2 * np.pi * 2.0**40
 
 
 @dataclass(frozen=True)
@@ -44,35 +48,6 @@ class FluctuationFit:
     offsets: NDArray[np.float64]
 
 
-@dataclass(frozen=True)
-class CompensatingGains:
-    """Gains of the gauges, and what they are worth.
-
-    Attributes
-    ----------
-    gains : numpy.ndarray
-        g_j, shape (gauges,); normalised so that the torque signal is that of equal gains.
-    exact : bool
-        Whether the fluctuation vanishes; with fewer than 2N + 1 gauges only its least residual is
-        reached.
-    residuals : numpy.ndarray
-        Amplitude left in each harmonic, shape (harmonics,), in the unit of the amplitudes.
-    residuals_equal_gains : numpy.ndarray
-        The same with equal gains.
-    noise_factor : float
-        M sum(g^2) / (sum g)^2.
-    condition : float
-        Largest over smallest non-zero singular value of the conditions.
-    """
-
-    gains: NDArray[np.float64]
-    exact: bool
-    residuals: NDArray[np.float64]
-    residuals_equal_gains: NDArray[np.float64]
-    noise_factor: float
-    condition: float
-
-
 def minimum_gauges(harmonics: int) -> int:
     """Fewest gauges that cancel a number of harmonics, 2 N + 1. Godler 2000, eq. (11).
 
@@ -85,10 +60,13 @@ def minimum_gauges(harmonics: int) -> int:
     -------
     int
         M_min.
+
+    Raises
+    ------
+    InputError
+        If it is no whole number of at least 1.
     """
-    if harmonics < 1:
-        raise InputError(f"harmonics = {harmonics}: expected at least 1; give a positive number")
-    return 2 * harmonics + 1
+    return 2 * whole_number("harmonics", harmonics) + 1
 
 
 def enough_gauges(gauges: int, harmonics: int) -> bool:
@@ -104,9 +82,15 @@ def enough_gauges(gauges: int, harmonics: int) -> bool:
     Returns
     -------
     bool
-        True guarantees a solution of eq. (9), not a useful one.
+        True guarantees a solution of eq. (9), not a useful one: `compensating_gains` says what a
+        solution is worth.
+
+    Raises
+    ------
+    InputError
+        If one of them is no whole number of at least 1.
     """
-    return gauges >= minimum_gauges(harmonics)
+    return whole_number("gauges", gauges) >= minimum_gauges(harmonics)
 
 
 def equally_spaced_positions_rad(gauges: int) -> NDArray[np.float64]:
@@ -121,8 +105,14 @@ def equally_spaced_positions_rad(gauges: int) -> NDArray[np.float64]:
     -------
     numpy.ndarray
         Shape (gauges,), rad; they count against the wave-generator angle.
+
+    Raises
+    ------
+    InputError
+        If it is no whole number of at least 1.
     """
-    return np.array([_core.equally_spaced_position_rad(j, gauges) for j in range(1, gauges + 1)])
+    count = whole_number("gauges", gauges)
+    return np.array([_core.equally_spaced_position_rad(j, count) for j in range(1, count + 1)])
 
 
 def compensation_conditions(
@@ -148,7 +138,7 @@ def compensation_conditions(
     Raises
     ------
     InputError
-        If the shapes do not fit.
+        If the shapes do not fit or values are not finite.
     """
     amplitude = contiguous("amplitudes", amplitudes, np.float64, dimensions=2)
     phase = contiguous("phase_errors_rad", phase_errors_rad, np.float64, dimensions=2)
@@ -159,6 +149,9 @@ def compensation_conditions(
             f"positions_rad {position.shape}: expected (harmonics, gauges) twice and (gauges,); "
             "give one column a gauge"
         )
+    for name, values in (("amplitudes", amplitude), ("phase_errors_rad", phase)):
+        require_finite(name, values, "harmonic", "gauge")
+    require_finite("positions_rad", position, "gauge")
     harmonics, gauges = amplitude.shape
     matrix = np.empty((2 * harmonics, gauges))
     for j in range(gauges):
@@ -170,74 +163,6 @@ def compensation_conditions(
         for i in range(harmonics):
             matrix[2 * i, j], matrix[2 * i + 1, j] = gauge.phasor(i + 1)
     return matrix
-
-
-def compensating_gains(
-    conditions: ArrayLike, torque_sensitivities: ArrayLike | None = None
-) -> CompensatingGains:
-    """Gains that cancel the fluctuation at the least noise. Godler 2000, section III-B.
-
-    Where the conditions leave a choice (M > 2N + 1) the gains with the least noise at the same
-    torque signal are taken; where they leave none but zero (M < 2N + 1), those with the least
-    residual.
-
-    Parameters
-    ----------
-    conditions : array_like
-        A from `compensation_conditions`, shape (2 harmonics, gauges).
-    torque_sensitivities : array_like, optional
-        t_j, signal of each gauge per Nm in any common unit, shape (gauges,); equal without. The
-        gains keep t.g = sum(t).
-
-    Returns
-    -------
-    CompensatingGains
-        Gains, residual, noise factor, condition.
-
-    Raises
-    ------
-    InputError
-        If the gains that cancel the fluctuation would cancel the torque as well.
-    """
-    matrix = contiguous("conditions", conditions, np.float64, dimensions=2)
-    gauges = matrix.shape[1]
-    torque = (
-        np.ones(gauges)
-        if torque_sensitivities is None
-        else contiguous("torque_sensitivities", torque_sensitivities, np.float64)
-    )
-    if torque.shape != (gauges,) or not np.all(np.isfinite(torque)) or not np.any(torque):
-        raise InputError(
-            f"torque_sensitivities = {torque.tolist()}: expected {gauges} finite numbers, not all "
-            "0, one a gauge; measure them with a known load"
-        )
-    if not np.all(np.isfinite(matrix)):
-        raise InputError("conditions is not finite: expected numbers; fit the fluctuation again")
-    _, singular, right = np.linalg.svd(matrix)
-    tolerance = max(matrix.shape) * np.finfo(np.float64).eps * singular.max(initial=0.0)
-    rank = int(np.sum(singular > tolerance))
-    exact = rank < gauges
-    if exact:
-        null_space = right[rank:]
-        direction = null_space.T @ (null_space @ torque)
-        signal = float(torque @ direction)
-        if signal <= 1e-9 * float(torque @ torque):
-            raise InputError(
-                "gains that cancel this fluctuation cancel the torque as well: expected phasors "
-                "of the gauges that point apart; move or add a gauge"
-            )
-    else:
-        direction = np.asarray(np.linalg.solve(matrix.T @ matrix, torque), dtype=np.float64)
-        signal = float(torque @ direction)
-    gains = direction * float(np.sum(torque)) / signal
-    return CompensatingGains(
-        gains=gains,
-        exact=exact,
-        residuals=_amplitudes(matrix @ gains),
-        residuals_equal_gains=_amplitudes(matrix @ np.ones(gauges)),
-        noise_factor=_core.Gains(gains.tolist()).noise_factor,
-        condition=float(singular[0] / singular[rank - 1]) if rank else 1.0,
-    )
 
 
 def fit_fluctuation(
@@ -271,8 +196,16 @@ def fit_fluctuation(
     Raises
     ------
     InputError
-        If the shapes do not fit or the angle covers less than half a turn.
+        If the shapes do not fit, values are not finite, the angle covers less than half a turn or
+        does not tell the harmonics apart.
     """
+    harmonics = whole_number("harmonics", harmonics)
+    factor = real_number("wave_factor", wave_factor)
+    if not 0 < factor < 2**31:
+        raise InputError(
+            f"wave_factor = {factor:g}: expected a number above 0 and below 2^31, wave turns per "
+            "motor turn; take it from the gear"
+        )
     signal = contiguous("signals", signals, np.float64, dimensions=2)
     angle = contiguous("motor_angle_rad", motor_angle_rad, np.float64)
     position = contiguous("positions_rad", positions_rad, np.float64)
@@ -281,17 +214,36 @@ def fit_fluctuation(
             f"signals has the shape {signal.shape}: expected ({len(angle)}, {len(position)}), a "
             "row a sample of motor_angle_rad and a column a gauge of positions_rad; check both"
         )
-    minimum_gauges(harmonics)
+    require_finite("signals", signal, "row", "column")
+    require_finite("motor_angle_rad", angle, "row")
+    require_finite("positions_rad", position, "gauge")
+    for name, values in (("motor_angle_rad", angle), ("positions_rad", position)):
+        if np.any(np.abs(values) > LARGEST_ANGLE_RAD):
+            raise InputError(
+                f"{name} reaches {np.abs(values).max():g} rad: expected angles within 2^40 turns; "
+                "check their unit"
+            )
     if len(angle) == 0 or np.ptp(angle) < np.pi:
         raise InputError(
             "motor_angle_rad covers less than half a turn: expected at least pi rad; turn the "
             "wave generator further"
         )
-    orders = 2 * wave_factor * np.arange(1, harmonics + 1)
+    if len(angle) < 2 + 2 * harmonics:
+        raise InputError(
+            f"motor_angle_rad has {len(angle)} elements: expected at least {2 + 2 * harmonics} for "
+            f"{harmonics} harmonic(s), an offset and a drift; record more samples"
+        )
+    orders = 2 * factor * np.arange(1, harmonics + 1)
     columns = [np.ones_like(angle), (angle - angle.mean()) / np.ptp(angle)]
     for order in orders:
         columns += [np.sin(order * angle), np.cos(order * angle)]
     observation = np.column_stack(columns)
+    if np.linalg.matrix_rank(observation) < observation.shape[1]:
+        raise InputError(
+            f"motor_angle_rad does not tell {harmonics} harmonic(s), offset and drift of the signals "
+            "apart: expected many different angles over half a turn or more; record at other "
+            "angles, or fit fewer harmonics"
+        )
     fits = [least_squares(observation, signal[:, j]) for j in range(signal.shape[1])]
     sine = np.array([fit.parameters[2::2] for fit in fits]).T
     cosine = np.array([fit.parameters[3::2] for fit in fits]).T
@@ -308,8 +260,3 @@ def fit_fluctuation(
         phase_standard_errors_rad=phase_errors,
         offsets=np.array([fit.parameters[0] for fit in fits]),
     )
-
-
-def _amplitudes(components: NDArray[np.float64]) -> NDArray[np.float64]:
-    pairs = components.reshape(-1, 2)
-    return np.hypot(pairs[:, 0], pairs[:, 1])

@@ -7,7 +7,7 @@ directions, ranges and temperatures say how far it holds. Taghirad & Belanger 19
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 from scipy import stats
@@ -16,9 +16,11 @@ from strainwave.arrays import contiguous
 from strainwave.errors import InputError
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from numpy.typing import ArrayLike, NDArray
+
+
+#: Share of the largest torque that a gain must explain to be told from rounding.
+SMALLEST_SHARE_EXPLAINED: Final = 1e-9
 
 
 @dataclass(frozen=True)
@@ -131,11 +133,15 @@ def pseudo_inverse(matrix: ArrayLike) -> NDArray[np.float64]:
     Raises
     ------
     InputError
-        If the columns of A are not independent.
+        If values are not finite or the columns of A are not independent.
     """
     observation = contiguous("matrix", matrix, np.float64, dimensions=2)
+    _require_finite("matrix", observation)
     _require_rank(observation)
-    return np.asarray(np.linalg.pinv(observation), dtype=np.float64)
+    with np.errstate(all="ignore"):
+        inverse = np.asarray(np.linalg.pinv(observation), dtype=np.float64)
+    _require_no_overflow(inverse)
+    return inverse
 
 
 def least_squares(matrix: ArrayLike, measurements: ArrayLike) -> LeastSquaresFit:
@@ -165,20 +171,20 @@ def least_squares(matrix: ArrayLike, measurements: ArrayLike) -> LeastSquaresFit
             f"measurements has {len(measured)} elements: expected {len(observation)}, the rows "
             "of the observation matrix; give arrays of one length"
         )
-    for name, values in (("matrix", observation), ("measurements", measured)):
-        if not np.all(np.isfinite(values)):
-            row = int(np.argwhere(~np.isfinite(values))[0][0])
-            raise InputError(
-                f"{name} is not finite in row {row}: expected numbers; leave that measurement out"
-            )
+    _require_finite("matrix", observation)
+    _require_finite("measurements", measured)
     inverse = pseudo_inverse(observation)
-    parameters = inverse @ measured
-    residuals = measured - observation @ parameters
     freedom = observation.shape[0] - observation.shape[1]
-    variance = float(residuals @ residuals) / freedom if freedom > 0 else np.nan
+    with np.errstate(all="ignore"):
+        parameters = inverse @ measured
+        residuals = measured - observation @ parameters
+        squares = float(residuals @ residuals)
+        spread = np.sum(inverse**2, axis=1)
+        errors = np.sqrt((squares / freedom if freedom > 0 else np.nan) * spread)
+    _require_no_overflow(parameters, residuals, np.array(squares), spread)
     return LeastSquaresFit(
         parameters=parameters,
-        standard_errors=np.sqrt(variance * np.sum(inverse**2, axis=1)),
+        standard_errors=errors,
         residuals=residuals,
         condition=float(np.linalg.cond(observation)),
     )
@@ -205,10 +211,36 @@ def sensor_gain(volts: ArrayLike, torque_Nm: ArrayLike, *, intercept: bool = Fal
     Raises
     ------
     InputError
-        If the arrays do not fit each other or no load differs from the others.
+        If the arrays do not fit each other, volts or torque do not vary, or the torque does not
+        follow the volts.
     """
-    fit = least_squares(observation_matrix(volts, intercept=intercept), torque_Nm)
+    output = contiguous("volts", volts, np.float64)
+    torque = contiguous("torque_Nm", torque_Nm, np.float64)
+    if len(torque) != len(output):
+        raise InputError(
+            f"torque_Nm has {len(torque)} elements: expected {len(output)} as in volts; give one "
+            "torque a measurement"
+        )
+    for name, values, kind in (("volts", output, "outputs"), ("torque_Nm", torque, "loads")):
+        _require_finite(name, values)
+        if intercept and np.all(values == values[:1]):
+            raise InputError(
+                f"{name} has the same value in all {len(values)} measurements: expected at least "
+                f"two different {kind}; load the sensor with different torques"
+            )
+        if not np.any(values):
+            raise InputError(
+                f"{name} has no value other than 0 in {len(values)} measurements: expected at "
+                f"least one of the {kind} to differ from 0; load the sensor"
+            )
+    fit = least_squares(observation_matrix(output, intercept=intercept), torque)
     gain = float(fit.parameters[0])
+    reach_V = float(np.ptp(output) if intercept else np.abs(output).max())
+    if abs(gain) * reach_V <= SMALLEST_SHARE_EXPLAINED * float(np.abs(torque).max()):
+        raise InputError(
+            "torque_Nm does not follow volts, the gain of the best line is 0: expected an output "
+            "that changes with the load; check the wiring and the order of the measurements"
+        )
     return SensorGain(
         gain_Nm_per_V=gain,
         zero_V=-float(fit.parameters[1]) / gain if intercept else 0.0,
@@ -234,36 +266,49 @@ def consistency_measure(gains_Nm_per_V: ArrayLike) -> float:
     Raises
     ------
     InputError
-        If there are fewer than two gains.
+        If there are fewer than two gains, or they are not finite or not of one sign.
     """
     gains = contiguous("gains_Nm_per_V", gains_Nm_per_V, np.float64)
+    _require_finite("gains_Nm_per_V", gains)
     if len(gains) < 2:
         raise InputError(
             f"gains_Nm_per_V has {len(gains)} elements: expected at least 2; repeat the loading at "
             "another position"
         )
-    return float(np.std(gains, ddof=1) / np.abs(np.mean(gains)))
+    if not (np.all(gains > 0) or np.all(gains < 0)):
+        raise InputError(
+            f"gains_Nm_per_V reaches from {gains.min():g} to {gains.max():g} Nm/V: expected gains "
+            "of one sign, none of them 0; check the signs of volts and torque in each experiment"
+        )
+    gains = gains / gains[np.argmax(np.abs(gains))]  # has no unit, and squares cannot overflow
+    return float(np.std(gains, ddof=1) / np.mean(gains))
 
 
-def consistency(gains_Nm_per_V: Sequence[float]) -> Consistency:
+def consistency(gains_Nm_per_V: ArrayLike) -> Consistency:
     """Combine the gains of several experiments, and say what their scatter supports.
 
     Parameters
     ----------
-    gains_Nm_per_V : sequence of float
+    gains_Nm_per_V : array_like
         Gain of each experiment, at least two.
 
     Returns
     -------
     Consistency
         Mean, consistency measure, and intervals of normally distributed gains.
+
+    Raises
+    ------
+    InputError
+        If there are fewer than two gains, or they are not finite or not of one sign.
     """
-    measure = consistency_measure(gains_Nm_per_V)
-    count = len(gains_Nm_per_V)
+    gains = contiguous("gains_Nm_per_V", gains_Nm_per_V, np.float64)
+    measure = consistency_measure(gains)
+    count = len(gains)
     freedom = count - 1
     student = float(stats.t.ppf(0.975, freedom))
     return Consistency(
-        gain_Nm_per_V=float(np.mean(gains_Nm_per_V)),
+        gain_Nm_per_V=float(np.sum(gains / count)),
         consistency=measure,
         standard_uncertainty=measure / float(np.sqrt(count)),
         prediction_95=student * measure * float(np.sqrt(1 + 1 / count)),
@@ -272,9 +317,32 @@ def consistency(gains_Nm_per_V: Sequence[float]) -> Consistency:
     )
 
 
-def _require_rank(observation: NDArray[np.float64]) -> None:
-    if np.linalg.matrix_rank(observation) < observation.shape[1]:
+def _require_finite(name: str, values: NDArray[np.float64]) -> None:
+    finite = np.isfinite(values)
+    if not np.all(finite):
+        row = int(np.argwhere(~finite)[0][0])
         raise InputError(
-            f"the {observation.shape[1]} columns of the observation matrix are not independent: "
-            "expected measurements that tell them apart; load the sensor with different torques"
+            f"{name} is not finite in row {row}: expected numbers; leave that measurement out"
+        )
+
+
+def _require_rank(observation: NDArray[np.float64]) -> None:
+    rows, columns = observation.shape
+    if columns < 1 or rows < columns:
+        raise InputError(
+            f"matrix has {rows} rows and {columns} columns: expected at least one column, and a "
+            "row or more for each; add measurements"
+        )
+    if np.linalg.matrix_rank(observation) < columns:
+        raise InputError(
+            f"the {columns} columns of matrix are not independent: expected measurements that tell "
+            f"its {columns} parameters apart; vary what is measured, or fit fewer parameters"
+        )
+
+
+def _require_no_overflow(*results: NDArray[np.float64]) -> None:
+    if not all(np.all(np.isfinite(result)) for result in results):
+        raise InputError(
+            "the fit leaves the range of double precision: expected numbers within about 1e-150 "
+            "to 1e150; choose units that suit them"
         )

@@ -29,6 +29,7 @@ def demo(*, out: Path = Path("demo"), json: bool = False) -> None:
 
     from strainwave.cli.output import print_json, progress_console, result_console
     from strainwave.report.demo import STEPS, write_demo
+    from strainwave.reproduce.comparison import tallies, tally_sentence
 
     with Progress(
         SpinnerColumn(),
@@ -45,33 +46,38 @@ def demo(*, out: Path = Path("demo"), json: bool = False) -> None:
             on_done=lambda: progress.advance(task),
         )
         progress.update(task, description="report written")
-    missed = [entry for entry in finished.comparisons if not entry.reproduced]
+    agree = sum(entry.agrees for entry in finished.comparisons)
     if json:
         print_json(
             {
                 "report": str(finished.page),
-                "reproduced": len(finished.comparisons) - len(missed),
                 "compared": len(finished.comparisons),
+                "agree": agree,
+                "by_kind": {
+                    tally.kind: {"compared": tally.compared, "agree": tally.agree}
+                    for tally in tallies(finished.comparisons)
+                },
                 "comparisons": [entry.as_dict() for entry in finished.comparisons],
             }
         )
         return
     table = Table(title="Both papers, theirs beside ours (simulated stations)")
-    for heading in ("source", "quantity", "paper", "here", "accepted", ""):
-        table.add_column(heading, justify="right" if heading in ("paper", "here") else "left")
+    for heading in ("source", "quantity", "paper", "here", "accepted", "kind", ""):
+        table.add_column(heading, justify="right" if heading == "here" else "left")
     for entry in finished.comparisons:
         table.add_row(
             entry.source,
             entry.quantity,
-            f"{entry.published} {entry.unit}",
-            f"{entry.ours:.5g} {entry.unit}",
-            f"{entry.lowest:.5g} to {entry.highest:.5g}",
-            "reproduced" if entry.reproduced else "MISSED",
+            entry.published,
+            entry.ours_text,
+            entry.accepted_text,
+            entry.kind,
+            entry.verdict,
         )
     console = result_console()
     console.print(table)
     console.print(
-        f"{len(finished.comparisons) - len(missed)} of {len(finished.comparisons)} numbers "
-        f"reproduced; open {finished.page}",
+        f"{agree} of {len(finished.comparisons)} numbers agree "
+        f"({tally_sentence(finished.comparisons)}); open {finished.page}",
         soft_wrap=True,
     )

@@ -59,9 +59,15 @@ def check(path: Path, /, *, json: bool = False) -> None:
         Print the result as JSON.
     """
     from strainwave.cli.output import print_json, result_console
+    from strainwave.configuration import verify
+    from strainwave.errors import InputError
     from strainwave.joint import SECTION_NAMES, canonical_hash, read_joint, section_hash
 
     joint = read_joint(path).joint
+    try:
+        verify(joint)
+    except InputError as error:
+        raise InputError(f"{path}: {error}") from error
     present = {
         name: getattr(joint, name) for name in SECTION_NAMES if getattr(joint, name) is not None
     }

@@ -61,7 +61,7 @@ class Gains(Section):
     )
     noise_factor: Annotated[float, Unit("1")] | None = Field(
         default=None,
-        gt=0.0,
+        ge=1.0,
         description="Noise power against equal gains, M sum(g^2) / (sum g)^2: 1 is the least",
     )
     condition_number: Annotated[float, Unit("1")] | None = Field(

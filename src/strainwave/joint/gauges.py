@@ -65,6 +65,13 @@ class Gauges(Section):
         default=None,
         description="Upper end of the converter's range, one step above its highest code",
     )
+    converter_lowest_code: Annotated[int, Unit("1")] = Field(
+        default=0,
+        ge=-(2**23),
+        le=0,
+        description="Code at converter_minimum_V: 0 for straight binary, -2^(bits-1) for two's "
+        "complement",
+    )
     rosettes: ListOf[Rosette] = Field(
         min_length=1, description="The rosettes; gauge 1 is the first of them"
     )

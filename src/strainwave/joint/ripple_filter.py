@@ -19,10 +19,10 @@ def _check_order(value: Any) -> Any:
     """Take a number for a float, and leave a fraction as it is written."""
     if isinstance(value, str) and _FRACTION.fullmatch(value):
         return value
-    if isinstance(value, int | float) and not isinstance(value, bool) and 0 < value <= 1e6:
+    if isinstance(value, int | float) and not isinstance(value, bool) and 0 < value <= 1000:
         return float(value)
     raise ValueError(
-        'expected a positive number of cycles per motor turn, or a fraction such as "1/100" or '
+        'expected a number of cycles per motor turn above 0 and up to 1000, or a fraction such as "1/100" or '
         '"1/R" (R: ratio of the gear)'
     )
 

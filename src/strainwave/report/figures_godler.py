@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from strainwave.reproduce.gauge_count import Phasor
-    from strainwave.reproduce.godler2000 import Build, Compensation, Godler2000
+    from strainwave.reproduce.godler2000 import Build, Godler2000
 
 _QUARTERS = (0, 90, 180, 270, 360)
 
@@ -49,25 +49,33 @@ def fluctuation_figure(build: Build, limit_percent: float) -> Figure:
         turn_deg = np.rad2deg(build.angle_rad)
         for j, colour in zip(range(build.gauges), SERIES, strict=False):
             each.plot(turn_deg, 100 * build.signals_FS[:, j], color=colour, label=f"$e_{j + 1}$")
-        each.set(ylabel="signal fluctuation (%FS)", title="Each gauge")
-        each.legend(ncols=build.gauges, loc="upper right", handlelength=1.2, columnspacing=1)
+        each.plot(
+            turn_deg,
+            100 * build.sum_FS,
+            color=BLACK,
+            linewidth=1,
+            linestyle=(0, (4, 2)),
+            label="sum",
+        )
+        each.set(ylabel="signal fluctuation (%FS)", title="Each gauge, and the sum")
+        each.legend(ncols=build.gauges + 1, loc="upper right", handlelength=1.2, columnspacing=1)
         each.margins(y=0.25)
         _sum_panel(total, turn_deg, build.sum_FS, limit_percent)
-        total.set(title=f"Their sum: ±{100 * build.fluctuation_FS:.2g} %FS")
+        total.set(title=f"The sum alone, own scale: ±{100 * build.fluctuation_FS:.2f} %FS")
         for axes in (each, total):
             axes.set(xlabel="input shaft angle (°)", xticks=_QUARTERS, xlim=(0, 360))
         return figure
 
 
-def compensation_figure(three: Build, compensation: Compensation) -> Figure:
+def compensation_figure(three: Build, compensated: Build) -> Figure:
     """Fig. 10: the sum of three gauges before and after adjusting the gains.
 
     Parameters
     ----------
     three : Build
         The build with equal gains.
-    compensation : Compensation
-        Sum with adjusted gains.
+    compensated : Build
+        The build with adjusted gains, on another turn.
 
     Returns
     -------
@@ -79,7 +87,12 @@ def compensation_figure(three: Build, compensation: Compensation) -> Figure:
         axes = figure.subplots()
         turn_deg = np.rad2deg(three.angle_rad)
         axes.plot(turn_deg, 100 * three.sum_FS, color=GREY, label="equal gains (fig. 9b)")
-        axes.plot(turn_deg, 100 * compensation.sum_FS, color=BLUE, label="gains adjusted (fig. 10)")
+        axes.plot(
+            np.rad2deg(compensated.angle_rad),
+            100 * compensated.sum_FS,
+            color=BLUE,
+            label="gains adjusted (fig. 10)",
+        )
         axes.set(
             xlabel="input shaft angle (°)",
             ylabel="sum of three gauges (%FS)",
@@ -120,7 +133,7 @@ def linearity_figure(builds: Sequence[tuple[str, Build]]) -> Figure:
             )
             axes.set(
                 xlabel="applied torque (Nm)",
-                title=f"{title}: ±{100 * build.linearity_FS:.2g} %FS",
+                title=f"{title}\n±{100 * build.linearity_FS:.2f} %FS",
                 xticks=(-100, -50, 0, 50, 100),
             )
         panels[0].set(ylabel="linearity error (%FS)", ylim=(-3, 3))
@@ -141,8 +154,8 @@ def vector_figure(result: Godler2000) -> Figure:
         Vectors put end to end for two and for three gauges.
     """
     with figure_style():
-        figure = new_figure(3.2)
-        panels = figure.subplots(1, 2)
+        figure = new_figure(2.6)
+        panels = figure.subplots(1, 2, sharey=True)
         cases = (
             ("Two gauges: the least that is left", result.vectors_two),
             ("Three gauges: closed", result.vectors_three),
@@ -152,11 +165,11 @@ def vector_figure(result: Godler2000) -> Figure:
             axes.set(
                 title=title,
                 xlabel="part of sin 2mβ (relative to $a_{11}$)",
-                ylabel="part of cos 2mβ",
                 aspect="equal",
-                xlim=(-0.75, 1.45),
-                ylim=(-0.35, 1.15),
+                xlim=(-0.7, 1.5),
+                ylim=(-0.2, 1.1),
             )
+        panels[0].set(ylabel="part of cos 2mβ")
         return figure
 
 

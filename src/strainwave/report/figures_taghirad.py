@@ -15,16 +15,23 @@ from strainwave.report.style import (
     SERIES,
     figure_style,
     new_figure,
+    separate,
 )
+from strainwave.reproduce.taghirad1999_motion import STEADY_FROM_S
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+    from numpy.typing import NDArray
 
     from strainwave.reproduce.taghirad1999 import StaticCalibration
-    from strainwave.reproduce.taghirad1999_motion import Experiment, Signature, Spectrum
+    from strainwave.reproduce.taghirad1999_motion import Experiment, Signature
+    from strainwave.reproduce.taghirad1999_spectrum import Spectrum
+
+#: Samples of a block whose extremes are drawn, 20 ms.
+_BAND = 20
 
 
 def calibration_figure(calibration: StaticCalibration) -> Figure:
@@ -97,8 +104,9 @@ def spectrum_figure(experiment: Experiment, spectrum: Spectrum) -> Figure:
         Three panels.
     """
     with figure_style():
-        figure = new_figure(5.2)
+        figure = new_figure(5.6)
         axes = figure.subplot_mosaic("ab;cc", height_ratios=(1, 1.15))
+        separate(figure)
         shown = experiment.time_s <= 1.4
         time_s = experiment.time_s[shown]
         for name in ("a", "b"):
@@ -111,10 +119,10 @@ def spectrum_figure(experiment: Experiment, spectrum: Spectrum) -> Figure:
         below = spectrum.frequency_rad_s <= 1000
         axes["c"].plot(spectrum.frequency_rad_s[below], spectrum.power_Nm2[below], color=BLUE)
         top = float(spectrum.power_Nm2[spectrum.frequency_rad_s > 100].max())
-        for peak, order in zip(spectrum.peaks_rad_s, (2, 4), strict=True):
+        for peak in spectrum.peaks_rad_s:
             height = float(np.interp(peak, spectrum.frequency_rad_s, spectrum.power_Nm2))
             axes["c"].annotate(
-                f"{peak:.0f} rad/s, order {order}",
+                f"{peak:.0f} rad/s, order {peak / spectrum.speed_rad_s:.2f}",
                 (peak, height),
                 xytext=(8, 2),
                 textcoords="offset points",
@@ -144,24 +152,39 @@ def filter_figure(experiments: Sequence[Experiment]) -> Figure:
         For each the whole run, and a window of it.
     """
     with figure_style():
-        figure = new_figure(5.6)
+        figure = new_figure(5.8)
+        separate(figure)
         rows = figure.subplots(len(experiments), 2, width_ratios=(1.4, 1), squeeze=False)
         for (whole, window), experiment in zip(rows, experiments, strict=True):
-            _before_and_after(whole, experiment, 0.0, float(experiment.time_s[-1]))
-            _before_and_after(window, experiment, 2.0, 2.25)
-            whole.set(title=experiment.title.capitalize(), ylabel="torque (Nm)")
-            window.set(title="A quarter of a second of it")
+            _before_and_after(whole, experiment, 0.0, float(experiment.time_s[-1]), band=True)
+            _before_and_after(window, experiment, 2.0, 2.25, band=False)
+            whole.set(
+                title=experiment.title[0].upper() + experiment.title[1:], ylabel="torque (Nm)"
+            )
+            window.set(title="0.25 s of it, own scale")
         for axes in rows[-1]:
             axes.set(xlabel="time (s)")
         figure.legend(*rows[0][0].get_legend_handles_labels(), loc="outside lower center", ncols=3)
         return figure
 
 
-def _before_and_after(axes: Axes, experiment: Experiment, from_s: float, to_s: float) -> None:
+def _before_and_after(
+    axes: Axes, experiment: Experiment, from_s: float, to_s: float, *, band: bool
+) -> None:
     shown = (experiment.time_s >= from_s) & (experiment.time_s <= to_s)
     time_s = experiment.time_s[shown]
-    axes.plot(time_s, experiment.measured_Nm[shown], color=GREY, linewidth=0.7, label="measured")
-    axes.plot(time_s, experiment.filtered_Nm[shown], color=BLUE, label="published filter")
+    measured = experiment.measured_Nm[shown]
+    if band:
+        _extremes(axes, time_s, measured)
+    else:
+        axes.plot(time_s, measured, color=GREY, linewidth=0.8)
+    axes.plot(
+        time_s,
+        experiment.filtered_Nm[shown],
+        color=BLUE,
+        linewidth=0.7 if band else 1.2,
+        label="published filter",
+    )
     axes.plot(
         time_s,
         experiment.true_Nm[shown],
@@ -171,6 +194,20 @@ def _before_and_after(axes: Axes, experiment: Experiment, from_s: float, to_s: f
         label="true torque (simulation)",
     )
     axes.set(xlim=(from_s, to_s))
+
+
+def _extremes(axes: Axes, time_s: NDArray[np.float64], measured_Nm: NDArray[np.float64]) -> None:
+    """Draw the band between extremes: hundreds of ripples as lines would be a solid block."""
+    blocks = measured_Nm[: len(measured_Nm) // _BAND * _BAND].reshape(-1, _BAND)
+    axes.fill_between(
+        time_s[: blocks.size].reshape(-1, _BAND).mean(axis=1),
+        blocks.min(axis=1),
+        blocks.max(axis=1),
+        color=GREY,
+        alpha=0.35,
+        linewidth=0,
+        label="measured",
+    )
 
 
 def misalignment_figure(signatures: Sequence[Signature]) -> Figure:
@@ -190,16 +227,13 @@ def misalignment_figure(signatures: Sequence[Signature]) -> Figure:
         figure = new_figure(3.2)
         panels = figure.subplots(1, len(signatures), sharey=True)
         for axes, signature in zip(panels, signatures, strict=True):
-            axes.plot(
-                signature.time_s,
-                signature.measured_Nm,
-                color=GREY,
-                linewidth=0.5,
-                label="measured",
+            steady = (signature.time_s > STEADY_FROM_S) & (
+                signature.time_s < signature.time_s[-1] - 0.05
             )
+            _extremes(axes, signature.time_s, signature.measured_Nm)
             axes.plot(
-                signature.time_s[20:-20],
-                signature.slow_Nm[20:-20],
+                signature.time_s[steady],
+                signature.slow_Nm[steady],
                 color=SERIES[0],
                 label="its mean over a motor turn",
             )

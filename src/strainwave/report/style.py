@@ -9,7 +9,6 @@ from contextlib import contextmanager
 from typing import Any, Final
 
 import matplotlib as mpl
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 #: Colours that stay apart for people who do not see red or green (Okabe and Ito).
@@ -78,24 +77,17 @@ def new_figure(height_in: float, width_in: float = PAGE_WIDTH_IN) -> Figure:
     return Figure(figsize=(width_in, height_in))
 
 
-def legend_above(axes: Axes, columns: int) -> None:
-    """Put the legend above the axes, where it hides no data.
+def separate(figure: Figure) -> None:
+    """Leave room between rows of panels, so that titles keep off the labels above them.
 
     Parameters
     ----------
-    axes : matplotlib.axes.Axes
-        The axes.
-    columns : int
-        Number of columns of the legend.
+    figure : matplotlib.figure.Figure
+        A figure with more than one row.
     """
-    axes.legend(
-        loc="lower right",
-        bbox_to_anchor=(1.0, 1.0),
-        ncols=columns,
-        borderaxespad=0.1,
-        handlelength=1.6,
-        columnspacing=1.4,
-    )
+    engine = figure.get_layout_engine()
+    if engine is not None:
+        engine.set(hspace=0.09)  # type: ignore[call-arg]
 
 
 def svg(figure: Figure) -> str:
@@ -115,6 +107,22 @@ def svg(figure: Figure) -> str:
     with figure_style():
         figure.savefig(stream, format="svg", metadata={"Date": None, "Creator": None})
     return stream.getvalue()
+
+
+def true_minus(text: str) -> str:
+    """Replace hyphens of numbers by minus signs.
+
+    Parameters
+    ----------
+    text : str
+        A number, or numbers without words.
+
+    Returns
+    -------
+    str
+        The same, with minus signs.
+    """
+    return text.replace("-", "\N{MINUS SIGN}")
 
 
 def data_uri(svg_text: str) -> str:

@@ -13,13 +13,12 @@ import numpy as np
 
 from strainwave import _core
 from strainwave.calibrate.fluctuation import (
-    CompensatingGains,
     FluctuationFit,
-    compensating_gains,
     compensation_conditions,
     equally_spaced_positions_rad,
     fit_fluctuation,
 )
+from strainwave.calibrate.gains import CompensatingGains, compensating_gains
 from strainwave.calibrate.torque import SensorGain, sensor_gain
 from strainwave.reproduce import published
 from strainwave.reproduce.gauge_count import GaugeCount, Phasor, gauge_counts, vectors
@@ -35,8 +34,8 @@ if TYPE_CHECKING:
 
 #: Harmonics of the fit; the stations have two, so that a third or fourth would be noise.
 HARMONICS: Final = 4
-#: Weights before the first full load, which run the hysteresis in and are not read.
-RUNNING_IN: Final = 9
+#: Seed of the turn on which the gains are tried; they were found on another.
+TRIAL_SEED: Final = 30
 
 
 @dataclass(frozen=True)
@@ -55,8 +54,10 @@ class Build:
         Their sum with equal gains.
     fit : FluctuationFit
         Amplitudes and phase errors of the gauges' harmonics.
-    dominant_harmonic : int
-        Harmonic of the largest amplitude in the sum: 1 for two cycles per turn, 2 for four.
+    sum_harmonics_FS : numpy.ndarray
+        Amplitudes of the harmonics in the sum, shape (harmonics,), fraction of full scale.
+    periodic_FS : numpy.ndarray
+        These harmonics over the turn, shape (samples,): the sum without its noise.
     loads_Nm : numpy.ndarray
         Torque applied at standstill, shape (loads,), Nm.
     linearity_error_FS : numpy.ndarray
@@ -70,7 +71,8 @@ class Build:
     signals_FS: NDArray[np.float64]
     sum_FS: NDArray[np.float64]
     fit: FluctuationFit
-    dominant_harmonic: int
+    sum_harmonics_FS: NDArray[np.float64]
+    periodic_FS: NDArray[np.float64]
     loads_Nm: NDArray[np.float64]
     linearity_error_FS: NDArray[np.float64]
     line: SensorGain
@@ -81,6 +83,11 @@ class Build:
         return half_peak_to_peak(self.sum_FS)
 
     @property
+    def dominant_harmonic(self) -> int:
+        """Harmonic of the largest amplitude in the sum: 1 for two cycles per turn, 2 for four."""
+        return int(np.argmax(self.sum_harmonics_FS)) + 1
+
+    @property
     def linearity_FS(self) -> float:
         """Largest linearity error, hysteresis included, as a magnitude."""
         return float(np.max(np.abs(self.linearity_error_FS)))
@@ -88,7 +95,7 @@ class Build:
 
 @dataclass(frozen=True)
 class Compensation:
-    """Gains for the three gauges, and what they leave.
+    """Gains for the three gauges.
 
     Attributes
     ----------
@@ -96,13 +103,10 @@ class Compensation:
         From the amplitudes and phases that the paper prints.
     from_run : CompensatingGains
         From the simulated run's own fit of the basic harmonic.
-    sum_FS : numpy.ndarray
-        Sum of the three signals with the gains from the run, fraction of full scale.
     """
 
     from_paper: CompensatingGains
     from_run: CompensatingGains
-    sum_FS: NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -114,7 +118,7 @@ class Godler2000:
     two, four, three : Build
         The paper's builds, by number of gauges.
     three_compensated : Build
-        The third build with its gains.
+        The third build with its gains, on another turn than the one they were found on.
     compensation : Compensation
         Gains of the third build.
     vectors_two, vectors_three : tuple of Phasor
@@ -149,7 +153,9 @@ def half_peak_to_peak(signal: NDArray[np.float64]) -> float:
     return float(np.ptp(signal)) / 2
 
 
-def run_build(gauges: int, gains: NDArray[np.float64] | None = None) -> Build:
+def run_build(
+    gauges: int, gains: NDArray[np.float64] | None = None, *, seed: int | None = None
+) -> Build:
     """Turn one build and load it.
 
     Parameters
@@ -158,6 +164,8 @@ def run_build(gauges: int, gains: NDArray[np.float64] | None = None) -> Build:
         2, 4 or 3.
     gains : numpy.ndarray, optional
         Gains of the gauges; all 1 without.
+    seed : int, optional
+        Seed of the turn; the number of gauges without.
 
     Returns
     -------
@@ -167,7 +175,7 @@ def run_build(gauges: int, gains: NDArray[np.float64] | None = None) -> Build:
     station = godler2000(gauges)
     weights = _core.Gains(np.ones(gauges).tolist() if gains is None else gains.tolist())
     scale = station.sensor_gain_Nm_per_V / RATED_TORQUE_NM
-    turning = one_turn(gauges, seed=gauges)
+    turning = one_turn(gauges, seed=gauges if seed is None else seed)
     signals = turning.volts * scale
     signals -= signals.mean(axis=0)
     angle = turning.truth.motor_angle_rad
@@ -179,6 +187,7 @@ def run_build(gauges: int, gains: NDArray[np.float64] | None = None) -> Build:
         wave_factor=station.wave_factor,
     )
     total = weights.weighted_sum(np.ascontiguousarray(signals))
+    harmonics, periodic = _harmonics(total, angle, station.wave_factor)
     loads, line, error = _linearity(gauges, weights)
     return Build(
         gauges=gauges,
@@ -186,16 +195,18 @@ def run_build(gauges: int, gains: NDArray[np.float64] | None = None) -> Build:
         signals_FS=signals,
         sum_FS=total,
         fit=fit,
-        dominant_harmonic=_dominant_harmonic(total, angle, station.wave_factor),
+        sum_harmonics_FS=harmonics,
+        periodic_FS=periodic,
         loads_Nm=loads,
         linearity_error_FS=error,
         line=line,
     )
 
 
-def _dominant_harmonic(
+def _harmonics(
     total: NDArray[np.float64], angle: NDArray[np.float64], wave_factor: float
-) -> int:
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Amplitudes of the sum's harmonics, and what they make over the turn."""
     fit = fit_fluctuation(
         total[:, np.newaxis],
         angle,
@@ -203,7 +214,9 @@ def _dominant_harmonic(
         harmonics=HARMONICS,
         wave_factor=wave_factor,
     )
-    return int(np.argmax(fit.amplitudes[:, 0])) + 1
+    amplitudes, phases_rad = fit.amplitudes[:, 0], fit.phase_errors_rad[:, 0]
+    order = 2 * wave_factor * np.arange(1, HARMONICS + 1)
+    return amplitudes, np.sin(np.outer(angle, order) + phases_rad) @ amplitudes
 
 
 def _linearity(
@@ -211,26 +224,34 @@ def _linearity(
 ) -> tuple[NDArray[np.float64], SensorGain, NDArray[np.float64]]:
     """Load at standstill, and take the straight line through what the sensor shows."""
     loading = linearity_experiment(gauges, seed=10 + gauges)
-    loads = loading.applied_torque_Nm[RUNNING_IN:]
-    volts = weights.weighted_sum(np.ascontiguousarray(loading.volts[RUNNING_IN:]))
+    # What comes before the first full load runs the hysteresis in and is not read.
+    full = int(np.argmax(loading.applied_torque_Nm))
+    loads = loading.applied_torque_Nm[full:]
+    volts = weights.weighted_sum(np.ascontiguousarray(loading.volts[full:]))
     line = sensor_gain(volts, loads, intercept=True)
     shown_Nm = line.gain_Nm_per_V * (volts - line.zero_V)
     return loads, line, (shown_Nm - loads) / RATED_TORQUE_NM
 
 
-def _compensation(three: Build) -> Compensation:
-    positions = equally_spaced_positions_rad(3)
-    from_paper = compensating_gains(
+def _published_gains(gauges: int) -> CompensatingGains:
+    """Gains of the first gauges from the amplitudes and phases that the paper prints."""
+    return compensating_gains(
         compensation_conditions(
-            [published.THREE_GAUGE_AMPLITUDES],
-            np.deg2rad([published.THREE_GAUGE_PHASE_ERRORS_DEG]),
-            positions,
+            [published.THREE_GAUGE_AMPLITUDES[:gauges]],
+            np.deg2rad([published.THREE_GAUGE_PHASE_ERRORS_DEG[:gauges]]),
+            equally_spaced_positions_rad(gauges),
         )
     )
-    from_run = compensating_gains(
-        compensation_conditions(three.fit.amplitudes[:1], three.fit.phase_errors_rad[:1], positions)
+
+
+def _run_gains(three: Build) -> CompensatingGains:
+    return compensating_gains(
+        compensation_conditions(
+            three.fit.amplitudes[:1],
+            three.fit.phase_errors_rad[:1],
+            equally_spaced_positions_rad(3),
+        )
     )
-    return Compensation(from_paper, from_run, three.signals_FS @ from_run.gains)
 
 
 def run() -> Godler2000:
@@ -242,24 +263,17 @@ def run() -> Godler2000:
         Every result.
     """
     three = run_build(3)
-    compensation = _compensation(three)
-    two_gains = compensating_gains(
-        compensation_conditions(
-            [published.THREE_GAUGE_AMPLITUDES[:2]],
-            np.deg2rad([published.THREE_GAUGE_PHASE_ERRORS_DEG[:2]]),
-            equally_spaced_positions_rad(2),
-        )
-    )
+    from_paper, from_run = _published_gains(3), _run_gains(three)
+    compensated = run_build(3, from_run.gains, seed=TRIAL_SEED)
     phases_rad = np.deg2rad(published.THREE_GAUGE_PHASE_ERRORS_DEG)
+    amplitudes = published.THREE_GAUGE_AMPLITUDES
     return Godler2000(
         two=run_build(2),
         four=run_build(4),
         three=three,
-        three_compensated=run_build(3, compensation.from_run.gains),
-        compensation=compensation,
-        vectors_two=vectors(published.THREE_GAUGE_AMPLITUDES[:2], phases_rad[:2], two_gains.gains),
-        vectors_three=vectors(
-            published.THREE_GAUGE_AMPLITUDES, phases_rad, compensation.from_paper.gains
-        ),
+        three_compensated=compensated,
+        compensation=Compensation(from_paper, from_run),
+        vectors_two=vectors(amplitudes[:2], phases_rad[:2], _published_gains(2).gains),
+        vectors_three=vectors(amplitudes, phases_rad, from_paper.gains),
         gauge_counts=gauge_counts(),
     )

@@ -1,7 +1,8 @@
 """Torque before and after on one simulated joint, with the torque that must stay.
 
 The oscillator filter with a small tuning and the gear's own orders, at constant speed, while
-something touches the joint. What is removed and what is left alone stand in one picture.
+something touches the joint. What is removed, what is left alone and what comes back while the
+filter learns the ripple under load stand in one picture.
 """
 
 from __future__ import annotations
@@ -40,19 +41,39 @@ class Overview:
     measured_Nm, clean_Nm, true_Nm : numpy.ndarray
         Torque with ripple, without, and as transmitted without its ripple (from the simulation),
         Nm.
-    ripple_dB : float
-        Change of the ripple's rms by the filter before the contact, dB.
-    contact_error_percent : float
-        Distance of the output's mean from the true torque's over the contact's second half, in %
-        of the contact.
     """
 
     time_s: NDArray[np.float64]
     measured_Nm: NDArray[np.float64]
     clean_Nm: NDArray[np.float64]
     true_Nm: NDArray[np.float64]
-    ripple_dB: float
-    contact_error_percent: float
+
+    @property
+    def ripple_dB(self) -> float:
+        """Change of the ripple's rms by the filter in the half second before the contact, dB."""
+        learned = self._between(LEARNED_FROM_S, CONTACT_FROM_S)
+        before, after = (
+            np.std((torque - self.true_Nm)[learned]) for torque in (self.measured_Nm, self.clean_Nm)
+        )
+        return 20 * float(np.log10(after / before))
+
+    @property
+    def contact_error_percent(self) -> float:
+        """Mean distance of the output from the true torque, contact's second half, in % of it.
+
+        The sensor's own errors are in it: gain, hysteresis, zero.
+        """
+        touched = self._between((CONTACT_FROM_S + CONTACT_TO_S) / 2, CONTACT_TO_S)
+        return 100 * float(np.mean((self.clean_Nm - self.true_Nm)[touched])) / CONTACT_NM
+
+    @property
+    def returned_Nm(self) -> float:
+        """Largest distance of the output from the true torque during the contact, Nm."""
+        touched = self._between(CONTACT_FROM_S, CONTACT_TO_S)
+        return float(np.max(np.abs((self.clean_Nm - self.true_Nm)[touched])))
+
+    def _between(self, from_s: float, to_s: float) -> NDArray[np.bool_]:
+        return np.asarray((self.time_s >= from_s) & (self.time_s < to_s))
 
 
 def overview() -> Overview:
@@ -75,21 +96,10 @@ def overview() -> Overview:
         orders=[_core.Rational(2) * wave, _core.Rational(4) * wave],
         rotation_source=_core.RotationSource.angle,
     )
-    measured = run.raw_torque_Nm
-    clean = np.asarray(
-        OscillatorFilter(config).process(measured, motor_angle_rad=run.motor_angle_rad).torque_Nm
-    )
-    true = run.truth.torque_without_ripple_Nm
-    learned = (run.time_s >= LEARNED_FROM_S) & (run.time_s < CONTACT_FROM_S)
-    touched = (run.time_s >= (CONTACT_FROM_S + CONTACT_TO_S) / 2) & (run.time_s < CONTACT_TO_S)
-    before, after = (np.std((torque - true)[learned]) for torque in (measured, clean))
-    # Up to the sensor's own gain and hysteresis, which no filter sees: against the measured mean.
-    swallowed = np.mean((clean - measured)[touched])
+    clean = OscillatorFilter(config).process(run.raw_torque_Nm, motor_angle_rad=run.motor_angle_rad)
     return Overview(
         time_s=run.time_s,
-        measured_Nm=measured,
-        clean_Nm=clean,
-        true_Nm=true,
-        ripple_dB=20 * float(np.log10(after / before)),
-        contact_error_percent=100 * float(swallowed) / CONTACT_NM,
+        measured_Nm=run.raw_torque_Nm,
+        clean_Nm=np.asarray(clean.torque_Nm),
+        true_Nm=run.truth.torque_without_ripple_Nm,
     )

@@ -3,16 +3,20 @@
 T: Taghirad & Belanger 1999, "Intelligent built-in torque sensor for harmonic drive systems".
 G: Godler, Horiuchi, Hashimoto & Ninomiya 2000, "Accuracy improvement of built-in torque sensing for
 Harmonic Drives".
+
+What a preset has as its own input, such as the sensor gain of Table I, is taken from there.
 """
 
 from __future__ import annotations
 
 from typing import Final
 
+from strainwave.simulate.presets import taghirad1999 as station
+
 # Taghirad & Belanger 1999
-SENSOR_GAIN_NM_PER_V: Final = 6.60  # Table I
+SENSOR_GAIN_NM_PER_V: Final = station.SENSOR_GAIN_NM_PER_V  # Table I
 CONSISTENCY_MEASURE: Final = 0.02  # Table I, over eight experiments
-MOTOR_SPEED_RAD_S: Final = 156.0  # section V, fig. 8
+MOTOR_SPEED_RAD_S: Final = station.FREE_MOTION_SPEED_RAD_S  # section V, fig. 8
 SPECTRUM_START_S: Final = 0.8  # section V, fig. 8
 SPECTRUM_END_S: Final = 1.1  # section V, fig. 8
 FUNDAMENTAL_RAD_S: Final = 312.0  # section V, fig. 8
@@ -21,7 +25,6 @@ MISALIGNMENT_MOUNTED_NM: Final = 10.0  # section VI, fig. 10, peak to peak
 MISALIGNMENT_REASSEMBLED_NM: Final = 2.0  # section VI, peak to peak, "less than"
 
 # Godler et al. 2000
-RATED_TORQUE_NM: Final = 100.0  # sections II-A and IV
 FLUCTUATION_TWO_GAUGES_FS: Final = 0.04  # fig. 3 (b)
 FLUCTUATION_FOUR_GAUGES_FS: Final = 0.01  # fig. 6
 FLUCTUATION_THREE_GAUGES_FS: Final = 0.02  # fig. 9 (b)

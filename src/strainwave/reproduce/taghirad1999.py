@@ -8,18 +8,15 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from strainwave.calibrate.torque import Consistency, SensorGain, consistency, sensor_gain
-from strainwave.reproduce import published
-from strainwave.reproduce.comparison import Comparison, within
 from strainwave.reproduce.taghirad1999_motion import (
     Experiment,
     Signature,
-    Spectrum,
     experiment,
     signature,
-    spectrum,
     two_motions,
 )
-from strainwave.simulate.presets.taghirad1999 import RATED_TORQUE_NM, calibration_experiments
+from strainwave.reproduce.taghirad1999_spectrum import Spectrum, spectrum
+from strainwave.simulate.presets.taghirad1999 import calibration_experiments
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -42,7 +39,7 @@ class Loading:
     range_Nm : float
         Largest torque, Nm.
     direction : int
-        +1 or -1.
+        +1 or -1; 0 for loads in both directions.
     temperature_degC : float
         Temperature, degrees Celsius.
     volts : numpy.ndarray
@@ -164,119 +161,3 @@ def run(on_step: Callable[[str], None] = lambda _: None) -> Taghirad1999:
         for title, motion in two_motions("as_first_mounted")
     )
     return Taghirad1999(calibration, spectrum(ripple[0]), ripple, signatures, misalignment)
-
-
-def comparisons(result: Taghirad1999) -> dict[str, tuple[Comparison, ...]]:
-    """Compare with the paper, figure by figure.
-
-    Parameters
-    ----------
-    result : Taghirad1999
-        What was run here.
-
-    Returns
-    -------
-    dict
-        Comparisons by place: "table1", "fig7", "fig8", "fig10".
-    """
-    calibration = result.calibration
-    # A line of 0.3 s is 2 pi / 0.3 s wide, which is as near as a peak can be read.
-    width_rad_s = 2 * np.pi / (published.SPECTRUM_END_S - published.SPECTRUM_START_S)
-    as_mounted, reassembled = result.signatures
-    return {
-        "table1": (
-            within(
-                "T Table I",
-                "torque sensor gain, mean of eight experiments",
-                "6.60",
-                calibration.result.gain_Nm_per_V,
-                unit="Nm/V",
-                expected=published.SENSOR_GAIN_NM_PER_V,
-                tolerance=0.0142,  # twice the standard uncertainty of a mean of eight, 0.71 %
-            ),
-            Comparison(
-                "T Table I",
-                "consistency measure over eight experiments",
-                "2",
-                100 * calibration.result.consistency,
-                "%",
-                # 95 % confidence interval of a standard deviation of 2 % over eight experiments
-                1.3,
-                4.1,
-                "simulated",
-            ),
-        ),
-        "fig7": (
-            within(
-                "T fig. 7",
-                "gain of a full-range loading",
-                "6.60 (line)",
-                calibration.full_range.line.gain_Nm_per_V,
-                unit="Nm/V",
-                expected=published.SENSOR_GAIN_NM_PER_V,
-                tolerance=0.05,  # 95 % prediction for one more position
-            ),
-        ),
-        "fig8": (
-            Comparison(
-                "T fig. 8",
-                "speed from 0.8 to 1.1 s",
-                "about 156",
-                result.spectrum.speed_rad_s,
-                "rad/s",
-                154.0,
-                158.0,
-                "simulated",
-            ),
-            *(
-                Comparison(
-                    "T fig. 8",
-                    name,
-                    f"{expected:g}",
-                    peak,
-                    "rad/s",
-                    expected - width_rad_s / 2,
-                    expected + width_rad_s / 2,
-                    "simulated",
-                )
-                for name, expected, peak in zip(
-                    ("larger peaks of the torque's spectrum, first", "second"),
-                    (published.FUNDAMENTAL_RAD_S, published.FIRST_HARMONIC_RAD_S),
-                    result.spectrum.peaks_rad_s,
-                    strict=True,
-                )
-            ),
-        ),
-        "fig10": (
-            within(
-                "T fig. 10",
-                "misalignment as first mounted, peak to peak",
-                "10",
-                as_mounted.peak_to_peak_Nm,
-                unit="Nm",
-                expected=published.MISALIGNMENT_MOUNTED_NM,
-                tolerance=0.1,
-            ),
-            Comparison(
-                "T section VI",
-                "misalignment reassembled, peak to peak",
-                "less than 2",
-                reassembled.peak_to_peak_Nm,
-                "Nm",
-                0.5,
-                published.MISALIGNMENT_REASSEMBLED_NM,
-                "simulated",
-            ),
-        ),
-    }
-
-
-__all__ = [
-    "RATED_TORQUE_NM",
-    "Loading",
-    "StaticCalibration",
-    "Taghirad1999",
-    "comparisons",
-    "run",
-    "static_calibration",
-]

@@ -26,11 +26,10 @@ if TYPE_CHECKING:
 
     from strainwave.simulate.results import Run
 
-RATIO: Final = 100
+STATION: Final = taghirad1999()
+RATIO: Final = float(STATION.gear.ratio)
 SAMPLE_PERIOD_S: Final = 1e-3
 STEADY_FROM_S: Final = 0.85
-#: Lines of the spectrum below this are the motion itself, rad/s.
-LOWEST_RIPPLE_RAD_S: Final = 100.0
 
 
 @dataclass(frozen=True)
@@ -87,28 +86,6 @@ class Experiment:
 
 
 @dataclass(frozen=True)
-class Spectrum:
-    """Power spectrum of the measured torque between 0.8 and 1.1 s.
-
-    Attributes
-    ----------
-    frequency_rad_s : numpy.ndarray
-        Frequency, rad/s.
-    power_Nm2 : numpy.ndarray
-        Power, Nm^2.
-    peaks_rad_s : tuple of float
-        The two largest peaks above the motion itself, in rising order, rad/s.
-    speed_rad_s : float
-        Mean speed in that interval, rad/s.
-    """
-
-    frequency_rad_s: NDArray[np.float64]
-    power_Nm2: NDArray[np.float64]
-    peaks_rad_s: tuple[float, float]
-    speed_rad_s: float
-
-
-@dataclass(frozen=True)
 class Signature:
     """Misalignment at constant speed over one output turn.
 
@@ -121,7 +98,7 @@ class Signature:
     measured_Nm : numpy.ndarray
         Calibrated torque, Nm.
     slow_Nm : numpy.ndarray
-        Its mean over a motor turn, Nm.
+        Its mean over a motor turn at full speed, Nm; of no meaning before `STEADY_FROM_S`.
     expected_Nm : numpy.ndarray
         Load inertia times acceleration, Nm.
     peak_to_peak_Nm : float
@@ -153,12 +130,12 @@ def sensor_chain(gain_Nm_per_V: float, preset: str) -> TorqueSensor:
     """
     return TorqueSensor(
         _core.TorqueSensorConfig(
-            converter=taghirad1999().bridge.converter,
+            converter=STATION.bridge.converter,
             gains=_core.Gains([1.0]),
             calibration=_core.TorqueCalibration(
                 gain_Nm_per_V=gain_Nm_per_V, full_scale_Nm=RATED_TORQUE_NM
             ),
-            filter=oscillator_preset(preset, RATIO),
+            filter=oscillator_preset(preset, STATION.gear.ratio),
         )
     )
 
@@ -177,8 +154,7 @@ def expected_torque_Nm(run: Run) -> NDArray[np.float64]:
         T_exp of section V, shape (samples,), Nm.
     """
     smooth = signal.savgol_filter(run.motor_speed_rad_s, 101, 2, deriv=1, delta=SAMPLE_PERIOD_S)
-    inertia = taghirad1999().load.inertia_kg_m2
-    return np.asarray(smooth / RATIO * inertia)
+    return np.asarray(smooth / RATIO * STATION.load.inertia_kg_m2)
 
 
 def experiment(title: str, run: Run, gain_Nm_per_V: float, preset: str) -> Experiment:
@@ -237,39 +213,12 @@ def two_motions(misalignment: str) -> tuple[tuple[str, Run], tuple[str, Run]]:
         SpeedCommand(Sine(60.0, 0.4, phase_rad=-np.pi / 2, offset=60.0), 0.05, 0.4), 4.8, seed=92
     )
     return (
-        ("run-up to 156 rad/s", free_motion(91, misalignment=misalignment)),
+        (
+            f"run-up to {published.MOTOR_SPEED_RAD_S:g} rad/s",
+            free_motion(91, misalignment=misalignment),
+        ),
         ("speed swinging between 0 and 120 rad/s", swinging),
     )
-
-
-def spectrum(measured: Experiment) -> Spectrum:
-    """Power spectrum where the speed is almost flat, 0.8 to 1.1 s, and its two largest peaks.
-
-    Parameters
-    ----------
-    measured : Experiment
-        The run-up.
-
-    Returns
-    -------
-    Spectrum
-        Spectrum of the measured torque.
-    """
-    inside = (measured.time_s >= published.SPECTRUM_START_S) & (
-        measured.time_s < published.SPECTRUM_END_S
-    )
-    frequency_Hz, power = signal.periodogram(
-        measured.measured_Nm[inside],
-        fs=1 / SAMPLE_PERIOD_S,
-        window="hann",
-        nfft=8192,
-        detrend="linear",
-        scaling="spectrum",
-    )
-    frequency = 2 * np.pi * frequency_Hz
-    tops, _ = signal.find_peaks(np.where(frequency > LOWEST_RIPPLE_RAD_S, power, 0.0))
-    first, second = sorted(float(frequency[top]) for top in tops[np.argsort(power[tops])[-2:]])
-    return Spectrum(frequency, power, (first, second), float(measured.speed_rad_s[inside].mean()))
 
 
 def signature(title: str, misalignment: str, gain_Nm_per_V: float) -> Signature:

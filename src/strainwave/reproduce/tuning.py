@@ -16,12 +16,13 @@ import numpy as np
 from strainwave._core import OscillatorFilterConfig
 from strainwave.fidelity import PassThrough, RemovesRipple, StepResponse, contact_step, pass_through
 from strainwave.filter import OscillatorFilter, oscillator_preset
+from strainwave.reproduce import published
+from strainwave.simulate.presets.taghirad1999 import taghirad1999
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-RATIO = 100
-FULL_SPEED_RAD_S = 156.0
+FULL_SPEED_RAD_S = published.MOTOR_SPEED_RAD_S
 SLOW_SPEED_RAD_S = 50.0
 CONTACT_TORQUE_NM = 10.0
 SMALL_CONFIG = OscillatorFilterConfig(orders=[2, 4])
@@ -105,10 +106,10 @@ def removes_ripple(config: Callable[[], OscillatorFilterConfig]) -> RemovesRippl
     return run
 
 
-FOUR_STATES = "published, 4 states, 156 rad/s"
-SIX_STATES = "published, 6 states, 156 rad/s"
-FOUR_STATES_SLOW = "published, 4 states, 50 rad/s"
-SMALL_TUNING = "Q/R = 1e-5, 4 states, 156 rad/s"
+FOUR_STATES = f"published, 4 states, {FULL_SPEED_RAD_S:g} rad/s"
+SIX_STATES = f"published, 6 states, {FULL_SPEED_RAD_S:g} rad/s"
+FOUR_STATES_SLOW = f"published, 4 states, {SLOW_SPEED_RAD_S:g} rad/s"
+SMALL_TUNING = f"Q/R = 1e-5, 4 states, {FULL_SPEED_RAD_S:g} rad/s"
 
 
 def tuning_study() -> TuningStudy:
@@ -117,21 +118,26 @@ def tuning_study() -> TuningStudy:
     Returns
     -------
     TuningStudy
-        Responses from 0.2 to 100 Hz and to a contact of 10 Nm.
+        Responses from 0.2 to 120 Hz and to a contact of 10 Nm.
     """
     cases = (
         (FOUR_STATES, lambda: oscillator_preset("taghirad1999-4"), FULL_SPEED_RAD_S),
-        (SIX_STATES, lambda: oscillator_preset("taghirad1999", RATIO), FULL_SPEED_RAD_S),
+        (
+            SIX_STATES,
+            lambda: oscillator_preset("taghirad1999", taghirad1999().gear.ratio),
+            FULL_SPEED_RAD_S,
+        ),
         (FOUR_STATES_SLOW, lambda: oscillator_preset("taghirad1999-4"), SLOW_SPEED_RAD_S),
         (SMALL_TUNING, lambda: SMALL_CONFIG, FULL_SPEED_RAD_S),
     )
     # Dense about orders 2 and 4 of both speeds, where gain and delay change within a hertz.
-    near_a_notch = np.linspace(-2.5, 2.5, 21)
+    near_a_notch = np.linspace(-2.5, 2.5, 31)
     lines_Hz = [order * speed / (2 * np.pi) for order in (2, 4) for _, _, speed in cases]
     frequencies_Hz = np.unique(
         np.concatenate(
             [
-                np.geomspace(0.2, 120.0, 60),
+                np.geomspace(0.2, 30.0, 50),
+                np.linspace(30.0, 120.0, 46),
                 [1.0, 5.0],
                 *(line_Hz + near_a_notch for line_Hz in lines_Hz),
             ]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from itertools import pairwise
 
 import numpy as np
@@ -82,6 +82,22 @@ def require_integer(
         raise ConfigurationError(
             parameter, value, unit, f"a whole number of at least {minimum}{upper}"
         )
+
+
+def require_choice(parameter: str, value: object, choices: Collection[str]) -> None:
+    """Refuse what is none of a few words.
+
+    Parameters
+    ----------
+    parameter : str
+        Name of the parameter, for the message.
+    value : object
+        What was given.
+    choices : collection of str
+        What is allowed.
+    """
+    if not isinstance(value, str) or value not in choices:
+        raise ConfigurationError(parameter, value, "", " or ".join(choices))
 
 
 def require_length(parameter: str, given: Sequence[object], expected: int, of_what: str) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from strainwave.simulate.checks import require_number
-from strainwave.simulate.trajectories import Profile
+from strainwave.simulate.trajectories import Profile, require_profile
 
 
 @dataclass(frozen=True)
@@ -19,6 +19,9 @@ class CurrentCommand:
     """
 
     current: Profile
+
+    def __post_init__(self) -> None:
+        require_profile("current", self.current)
 
 
 @dataclass(frozen=True)
@@ -43,6 +46,7 @@ class SpeedCommand:
     feedforward_A_s2_per_rad: float = 0.0
 
     def __post_init__(self) -> None:
+        require_profile("motor_speed", self.motor_speed)
         require_number(
             "proportional_A_s_per_rad", self.proportional_A_s_per_rad, "A s/rad", minimum=0.0
         )

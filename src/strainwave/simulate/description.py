@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 from typing import Any, Literal, Self
 
 import numpy as np
@@ -10,7 +10,12 @@ import numpy as np
 import strainwave._core as core
 from strainwave.errors import ConfigurationError
 from strainwave.simulate.acquisition import Acquisition, Encoder, Tachometer
-from strainwave.simulate.checks import require_integer, require_length, require_number
+from strainwave.simulate.checks import (
+    require_choice,
+    require_integer,
+    require_length,
+    require_number,
+)
 from strainwave.simulate.faults import Fault
 from strainwave.simulate.mechanics import Flexspline, Load, Motor
 from strainwave.simulate.misalignment import Misalignment
@@ -41,8 +46,7 @@ class Bridge:
     converter: core.Converter = field(default_factory=core.Converter)
 
     def __post_init__(self) -> None:
-        if self.wiring not in ("half_bridge_each", "full_bridge"):
-            raise ConfigurationError("wiring", self.wiring, "", "half_bridge_each or full_bridge")
+        require_choice("wiring", self.wiring, ("half_bridge_each", "full_bridge"))
         require_number("supply_V", self.supply_V, "V", above=0.0)
 
     def volts_per_strain(self, gauge: GaugePlacement, gauge_count: int) -> float:
@@ -165,4 +169,10 @@ class StationDescription:
         Station
             The changed station.
         """
+        known = [each.name for each in fields(self)]
+        for name in changes:
+            if name not in known:
+                raise ConfigurationError(
+                    "with_changes", name, "", f"a field of a station ({', '.join(known)})"
+                )
         return replace(self, **changes)

@@ -65,15 +65,6 @@ class LoadingExperiment:
         """Largest torque applied, Nm."""
         return float(np.max(np.abs(self.applied_torque_Nm)))
 
-    @property
-    def gain_Nm_per_V(self) -> float:
-        """Least-squares gain through the origin of the summed channels.
-
-        Taghirad & Belanger 1999, eq. (5) to (8), with torque as the measurement.
-        """
-        summed = self.volts.sum(axis=1)
-        return float(summed @ self.applied_torque_Nm / (summed @ summed))
-
 
 def load_by_weights(
     station: Station,
@@ -107,6 +98,8 @@ def load_by_weights(
     LoadingExperiment
         Readings, recording and truth.
     """
+    if not isinstance(torques_Nm, Sequence | np.ndarray):
+        raise ConfigurationError("torques_Nm", torques_Nm, "", "a list of torques")
     if len(torques_Nm) == 0:
         raise ConfigurationError("torques_Nm", 0, "weights", "at least 1")
     for torque in torques_Nm:

@@ -21,7 +21,7 @@ class Truth:
 
     torque_Nm = torque_without_ripple_Nm + mesh_ripple_Nm, and
     sensed_torque_Nm = torque_Nm - unsensed_hysteresis_Nm + misalignment_Nm + sensing_ripple_Nm,
-    up to gain errors (temperature, nonlinearity, detached gauges) and zero drift.
+    up to gain errors (temperature, detached gauges) and zero drift.
 
     Parameters
     ----------
@@ -42,7 +42,8 @@ class Truth:
     misalignment_Nm : ndarray, shape (n,)
         Crosstalk of the misaligned load: read, not transmitted.
     sensing_ripple_Nm : ndarray, shape (n,)
-        What the wave strain adds to the sum of all gauges with equal gains: read, not transmitted.
+        What the strain that turns with the wave adds to the sum of all gauges with equal gains:
+        read, not transmitted.
     fluctuation_Nm : ndarray, shape (n, M)
         What each gauge adds to that sum.
     sensed_torque_Nm : ndarray, shape (n,)

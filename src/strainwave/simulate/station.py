@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
+from strainwave.errors import ConfigurationError
 from strainwave.simulate.acquisition import take_rows
 from strainwave.simulate.checks import require_integer, require_number
 from strainwave.simulate.commands import Command
@@ -14,7 +16,7 @@ from strainwave.simulate.integration import integrated_motion
 from strainwave.simulate.measuring import measure
 from strainwave.simulate.motion import Drive, Motion, prescribed_motion
 from strainwave.simulate.results import Run
-from strainwave.simulate.trajectories import NOTHING, FloatArray, Profile
+from strainwave.simulate.trajectories import NOTHING, FloatArray, Profile, require_profile
 
 __all__ = ["Bridge", "Station"]
 
@@ -57,9 +59,14 @@ class Station(StationDescription):
         Run
             Recording and truth.
         """
-        time_s = self._check_and_time(duration_s, seed, start_angle_rad)
-        motion = integrated_motion(self._drive(), command, contact_torque, time_s, start_angle_rad)
-        return self._measured(motion, duration_s, seed)
+        if not isinstance(command, Command):
+            raise ConfigurationError("command", command, "", "a CurrentCommand or a SpeedCommand")
+        require_profile("contact_torque", contact_torque)
+
+        def moved(plant: Drive, time_s: FloatArray) -> Motion:
+            return integrated_motion(plant, command, contact_torque, time_s, start_angle_rad)
+
+        return self._recorded(moved, duration_s, seed, start_angle_rad=start_angle_rad)
 
     def rotate(
         self,
@@ -89,11 +96,13 @@ class Station(StationDescription):
         Run
             Recording and truth.
         """
-        time_s = self._check_and_time(duration_s, seed, start_angle_rad)
-        motion = prescribed_motion(
-            self._drive(), motor_speed, contact_torque, time_s, start_angle_rad
-        )
-        return self._measured(motion, duration_s, seed)
+        require_profile("motor_speed", motor_speed)
+        require_profile("contact_torque", contact_torque)
+
+        def moved(plant: Drive, time_s: FloatArray) -> Motion:
+            return prescribed_motion(plant, motor_speed, contact_torque, time_s, start_angle_rad)
+
+        return self._recorded(moved, duration_s, seed, start_angle_rad=start_angle_rad)
 
     def hold(
         self, applied_torque: Profile, duration_s: float, seed: int, position_rad: float = 0.0
@@ -116,26 +125,36 @@ class Station(StationDescription):
         Run
             Recording and truth.
         """
-        time_s = self._check_and_time(duration_s, seed, position_rad)
-        motion = prescribed_motion(
-            self._drive(), NOTHING, applied_torque, time_s, position_rad, locked=True
-        )
-        return self._measured(motion, duration_s, seed)
+        require_profile("applied_torque", applied_torque)
 
-    def _drive(self) -> Drive:
-        ratio = float(self.gear.ratio)
-        return Drive(self.motor, ratio, self.flexspline, self.load, self.mesh_ripple)
+        def held(plant: Drive, time_s: FloatArray) -> Motion:
+            return prescribed_motion(
+                plant, NOTHING, applied_torque, time_s, position_rad, locked=True
+            )
 
-    def _check_and_time(self, duration_s: float, seed: int, start_angle_rad: float) -> FloatArray:
-        """Return the times of the mechanics: a little longer than the recording, for jitter and delay."""
+        return self._recorded(held, duration_s, seed, position_rad=position_rad)
+
+    def _recorded(
+        self,
+        moved: Callable[[Drive, FloatArray], Motion],
+        duration_s: float,
+        seed: int,
+        **angle_rad: float,
+    ) -> Run:
+        """Check what all runs have in common, move the mechanics and measure.
+
+        The mechanics runs a little longer than the recording, for jitter and delay.
+        """
         rate = self.acquisition.rate_Hz
         require_number("duration_s", duration_s, "s", minimum=2.0 / rate)
         require_integer("seed", seed, "", minimum=0)
-        require_number("start_angle_rad", start_angle_rad, "rad")
+        for name, angle in angle_rad.items():
+            require_number(name, angle, "rad")
         longer = duration_s + max(0.0, -self.acquisition.angle_to_torque_delay_s) + 1.0 / rate
         fine = rate * MECHANICS_STEPS_PER_SAMPLE
-        return np.arange(int(np.ceil(longer * fine)) + 1) / fine
-
-    def _measured(self, motion: Motion, duration_s: float, seed: int) -> Run:
+        time_s = np.arange(int(np.ceil(longer * fine)) + 1) / fine
+        ratio = float(self.gear.ratio)
+        plant = Drive(self.motor, ratio, self.flexspline, self.load, self.mesh_ripple)
         timing, *others = np.random.default_rng(seed).spawn(4)
-        return measure(self, motion, take_rows(self.acquisition, duration_s, timing), others)
+        rows = take_rows(self.acquisition, duration_s, timing)
+        return measure(self, moved(plant, time_s), rows, others)

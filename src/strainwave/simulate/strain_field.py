@@ -3,7 +3,8 @@
 Torque: a tube's shear stress T / (2 pi r^2 h) over the shear modulus.  Wave: the elliptic wave
 generator bends the open rim, and the diaphragm sees normal and shear strains with two and four
 (2 i) waves around, which turn with the wave and shift and grow with the load, because the teeth
-engage elsewhere under load.
+engage elsewhere under load.  Torque enters the flexspline where teeth engage, so its own strain is
+not even around either.
 """
 
 from __future__ import annotations
@@ -18,14 +19,34 @@ from strainwave.simulate.checks import require_length, require_number
 from strainwave.simulate.trajectories import FloatArray
 
 
+def tube_shear_per_Nm(radius_m: float, thickness_m: float, shear_modulus_Pa: float) -> float:
+    """Return the shear strain per torque of a thin tube, 1 / (2 pi r^2 h G).
+
+    Parameters
+    ----------
+    radius_m : float
+        Distance from the axis, m.
+    thickness_m : float
+        Thickness, m.
+    shear_modulus_Pa : float
+        Shear modulus, Pa.
+
+    Returns
+    -------
+    float
+        Engineering shear strain per Nm.
+    """
+    return 1.0 / (2 * math.pi * radius_m**2 * thickness_m * shear_modulus_Pa)
+
+
 @dataclass(frozen=True)
 class WaveHarmonic:
     """Harmonic i of the wave strain: 2 i cycles per turn of the wave over the flexspline.
 
-    Shear strain: shear_strain (1 + load_growth |w| + speed_growth |speed| / reference speed)
-    sin(2 i (m beta + position) + phase + load_phase w), where w is the torsion of the flexspline
-    relative to that at rated torque.  Normal strains follow in quadrature, as the derivative of a
-    bent ring's displacement does.
+    Shear strain: (shear_strain (1 + load_growth |w| + speed_growth |speed| / reference speed) +
+    torque_share x strain of the torque) sin(2 i (m beta + position) + phase + load_phase w), where
+    w is the torsion of the flexspline relative to that at rated torque.  Normal strains follow in
+    quadrature, as the derivative of a bent ring's displacement does.
 
     Parameters
     ----------
@@ -40,6 +61,9 @@ class WaveHarmonic:
         Relative growth at rated torque and at the reference speed, above -1.
     load_phase_rad : float
         Shift at rated torque; it changes sign with the torque.
+    torque_share : float
+        By which share of itself the strain of the torque is uneven around the flexspline in this
+        harmonic, 0 to 1.
     """
 
     shear_strain: float
@@ -49,6 +73,7 @@ class WaveHarmonic:
     load_growth: float = 0.0
     speed_growth: float = 0.0
     load_phase_rad: float = 0.0
+    torque_share: float = 0.0
 
     def __post_init__(self) -> None:
         require_number("shear_strain", self.shear_strain, "", minimum=0.0)
@@ -58,6 +83,7 @@ class WaveHarmonic:
         require_number("load_growth", self.load_growth, "", above=-1.0)
         require_number("speed_growth", self.speed_growth, "", above=-1.0)
         require_number("load_phase_rad", self.load_phase_rad, "rad")
+        require_number("torque_share", self.torque_share, "", minimum=0.0, maximum=1.0)
 
 
 @dataclass(frozen=True)
@@ -76,9 +102,11 @@ class GaugePlacement:
     gauge_factor : float
         Gauge factor, above 0.
     wave_scale : tuple of float
-        Amplitude of each harmonic at this gauge relative to the field's; empty: all 1.
+        Amplitude of each harmonic at this gauge relative to the field's, torque_share included;
+        empty: all 1.
     wave_phase_error_rad : tuple of float
-        psi_ij of Godler 2000, eq. (6), for each harmonic; empty: all 0.
+        psi_ij of Godler 2000, eq. (6), for each harmonic, where a paper gives the phases
+        themselves and not the placement that makes them; empty: all 0.
     """
 
     position_rad: float
@@ -121,8 +149,6 @@ class StrainField:
         Motor speed to which growth with speed refers, above 0.
     harmonics : tuple of WaveHarmonic
         Wave strain, harmonics i = 1, 2, ...
-    torsional_softening : float
-        The torsional strain grows by this share at rated torque, as its square.
     bypassed_hysteresis : float
         Share of the flexspline's hysteresis torque that passes by the gauges, at least 0: it is
         friction between clamped surfaces and not strain.
@@ -133,7 +159,6 @@ class StrainField:
     rated_torque_Nm: float = 40.0
     reference_speed_rad_s: float = 100.0
     harmonics: tuple[WaveHarmonic, ...] = ()
-    torsional_softening: float = 0.0
     bypassed_hysteresis: float = 0.0
 
     def __post_init__(self) -> None:
@@ -141,11 +166,10 @@ class StrainField:
         require_number("shear_modulus_Pa", self.shear_modulus_Pa, "Pa", above=0.0)
         require_number("rated_torque_Nm", self.rated_torque_Nm, "Nm", above=0.0)
         require_number("reference_speed_rad_s", self.reference_speed_rad_s, "rad/s", above=0.0)
-        require_number("torsional_softening", self.torsional_softening, "", above=-1.0)
         require_number("bypassed_hysteresis", self.bypassed_hysteresis, "", minimum=0.0)
 
     def shear_per_Nm(self, radius_m: float) -> float:
-        """Return the shear strain per torque, 1 / (2 pi r^2 h G).
+        """Return the shear strain per torque at a distance from the axis.
 
         Parameters
         ----------
@@ -157,8 +181,7 @@ class StrainField:
         float
             Engineering shear strain per Nm.
         """
-        area = 2 * math.pi * radius_m**2 * self.thickness_m
-        return 1.0 / (area * self.shear_modulus_Pa)
+        return tube_shear_per_Nm(radius_m, self.thickness_m, self.shear_modulus_Pa)
 
     def check_gauge(self, gauge: GaugePlacement) -> None:
         """Refuse a gauge whose lists do not fit the field's harmonics.
@@ -203,9 +226,9 @@ class Strain:
     Parameters
     ----------
     torsional : ndarray
-        Shear strain of the torque.
+        Shear strain of the torque, its mean around the flexspline.
     wave_shear : ndarray
-        Shear strain of the wave.
+        Shear strain that turns with the wave, the unevenness of the torque's included.
     radial, circumferential : ndarray
         Normal strains of the wave.
     """
@@ -233,12 +256,7 @@ def strain_at(field: StrainField, gauge: GaugePlacement, inputs: FieldInputs) ->
     Strain
         Strains in polar directions.
     """
-    relative = inputs.strained_torque_Nm / field.rated_torque_Nm
-    torsional = (
-        field.shear_per_Nm(gauge.radius_m)
-        * inputs.strained_torque_Nm
-        * (1 + field.torsional_softening * relative**2)
-    )
+    torsional = field.shear_per_Nm(gauge.radius_m) * inputs.strained_torque_Nm
     speed = np.abs(inputs.motor_speed_rad_s) / field.reference_speed_rad_s
     shear = np.zeros(len(speed))
     radial = np.zeros(len(speed))
@@ -253,7 +271,8 @@ def strain_at(field: StrainField, gauge: GaugePlacement, inputs: FieldInputs) ->
         )
         grown = 1 + harmonic.load_growth * np.abs(inputs.windup) + harmonic.speed_growth * speed
         size: NDArray[np.float64] = scale * grown
-        shear = shear + harmonic.shear_strain * size * np.sin(angle)
+        uneven = scale * harmonic.torque_share * torsional
+        shear = shear + (harmonic.shear_strain * size + uneven) * np.sin(angle)
         radial = radial + harmonic.radial_strain * size * np.cos(angle)
         circumferential = circumferential + harmonic.circumferential_strain * size * np.cos(angle)
     return Strain(np.asarray(torsional), shear, radial, circumferential)

@@ -8,11 +8,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
 
+from strainwave.errors import ConfigurationError
 from strainwave.simulate.checks import require_increasing, require_length, require_number
 
 FloatArray = NDArray[np.float64]
@@ -21,6 +22,7 @@ LARGEST = 1e6
 """Largest speed, current or torque of a profile: far beyond any drive, and no square overflows."""
 
 
+@runtime_checkable
 class Profile(Protocol):
     """A quantity over time: speed in rad/s, current in A or torque in Nm."""
 
@@ -35,6 +37,26 @@ class Profile(Protocol):
     def integral(self, time_s: FloatArray) -> FloatArray:
         """Return the quantity integrated from time 0 to the given times, times seconds."""
         ...
+
+
+def require_profile(parameter: str, given: object) -> None:
+    """Refuse what is no profile over time.
+
+    Parameters
+    ----------
+    parameter : str
+        Name of the parameter, for the message.
+    given : object
+        What was given.
+    """
+    if isinstance(given, type) or not isinstance(given, Profile):
+        raise ConfigurationError(
+            parameter,
+            given,
+            "",
+            "a profile over time",
+            "give a constant as PiecewiseLinear((0.0,), (value,))",
+        )
 
 
 @dataclass(frozen=True)
