@@ -119,6 +119,11 @@ void bind_bridge(nb::module_& m) {
                   "orientation_error_rad: float = 0.0, gauge_factor: float = 2.0) -> None"),
           "position_rad counts against the wave-generator angle: gauge j of M equally spaced ones "
           "stands at pi (j-1)/M and leads by 2 i pi (j-1)/M in harmonic i.")
+      .def("__repr__",
+           [](const nb::handle& self) {
+             return repr_of(self,
+                            {"position_rad", "radius_m", "orientation_error_rad", "gauge_factor"});
+           })
       .def_ro("position_rad", &RosetteD::position_rad)
       .def_ro("radius_m", &RosetteD::radius_m)
       .def_ro("orientation_error_rad", &RosetteD::orientation_error_rad)
@@ -160,6 +165,8 @@ void bind_bridge(nb::module_& m) {
           "offset_V"_a.none() = AmplifierD{}.offset_V, "rail_V"_a.none() = AmplifierD{}.rail_V,
           nb::sig("def __init__(self, *, gain: float = 1000.0, offset_V: float = 0.0, rail_V: "
                   "float = 10.0) -> None"))
+      .def("__repr__",
+           [](const nb::handle& self) { return repr_of(self, {"gain", "offset_V", "rail_V"}); })
       .def_ro("gain", &AmplifierD::gain)
       .def_ro("offset_V", &AmplifierD::offset_V)
       .def_ro("rail_V", &AmplifierD::rail_V)
@@ -198,6 +205,10 @@ void bind_bridge(nb::module_& m) {
           nb::sig("def __init__(self, *, bits: int = 16, minimum_V: float = -10.0, maximum_V: "
                   "float = 10.0, lowest_code: int = 0) -> None"),
           "lowest_code: 0 for straight binary, -2^(bits-1) for two's complement.")
+      .def("__repr__",
+           [](const nb::handle& self) {
+             return repr_of(self, {"bits", "minimum_V", "maximum_V", "lowest_code"});
+           })
       .def_ro("bits", &ConverterD::bits)
       .def_ro("minimum_V", &ConverterD::minimum_V)
       .def_ro("maximum_V", &ConverterD::maximum_V)

@@ -67,6 +67,13 @@ void bind_calibration(nb::module_& m) {
                   "maximum_temperature_degC: float = 120.0) -> None"),
           "linearisation: c_2, c_3, ..., dimensionless; torque = u + FS sum_n c_n (u/FS)^n with "
           "u = gain (volts - zero).")
+      .def("__repr__",
+           [](const nb::handle& self) {
+             return repr_of(self,
+                            {"gain_Nm_per_V", "zero_V", "full_scale_Nm", "linearisation",
+                             "reference_temperature_degC", "zero_drift_V_per_K", "gain_drift_per_K",
+                             "minimum_temperature_degC", "maximum_temperature_degC"});
+           })
       .def_ro("gain_Nm_per_V", &CalibrationD::gain_Nm_per_V)
       .def_ro("zero_V", &CalibrationD::zero_V)
       .def_ro("full_scale_Nm", &CalibrationD::full_scale_Nm)

@@ -30,6 +30,7 @@ void bind_gains(nb::module_& m) {
             new (self) GainsD(make_gains({values.data(), values.data() + values.size()}));
           },
           "values"_a.none(), nb::sig("def __init__(self, values: numpy.typing.ArrayLike) -> None"))
+      .def("__repr__", [](const nb::handle& self) { return repr_of(self, {"values"}); })
       .def_prop_ro("values",
                    [](const GainsD& self) {
                      return std::vector<double>(self.values, self.values + self.count);

@@ -74,6 +74,11 @@ void bind_gear(nb::module_& m) {
           "configuration"_a.sig("...") = GearConfiguration::fixed_circular_spline,
           "rated_torque_Nm"_a = Gear{}.rated_torque_Nm,
           "A gear from its tooth counts (Godler 2000, eq. 1 and 2).")
+      .def("__repr__",
+           [](const nb::handle& self) {
+             return repr_of(self,
+                            {"ratio", "configuration", "rated_torque_Nm", "output_direction"});
+           })
       .def_ro("ratio", &Gear::ratio, "Motor turns per output turn, a magnitude.")
       .def_ro("configuration", &Gear::configuration)
       .def_ro("output_direction", &Gear::output_direction,

@@ -266,6 +266,13 @@ void bind_oscillator_filter(nb::module_& m) {
           nb::sig("def taghirad1999(ratio: float | numbers.Rational | Rational) -> "
                   "OscillatorFilterConfig"),
           "Orders 2, 4 and 1/ratio, Q = 1e3 I, R = 1, as published in section VI; no protection.")
+      .def("__repr__",
+           [](const nb::handle& self) {
+             return repr_of(
+                 self, {"orders", "process_noise_variance_Nm2", "measurement_noise_variance_Nm2",
+                        "initial_variance_Nm2", "sample_period_s", "rotation_source",
+                        "minimum_travel_rad", "minimum_speed_rad_s", "variance_limit_ratio"});
+           })
       .def_prop_ro("orders",
                    [](const OscillatorConfigD& self) {
                      return std::vector<Rational>(self.orders, self.orders + self.order_count);

@@ -181,6 +181,10 @@ void bind_torque_sensor(nb::module_& m) {
           },
           nb::kw_only(), "converter"_a, "gains"_a, "calibration"_a, "filter"_a,
           "One gain per channel; a full bridge is one channel.")
+      .def("__repr__",
+           [](const nb::handle& self) {
+             return repr_of(self, {"converter", "gains", "calibration", "filter"});
+           })
       .def_ro("converter", &ConfigD::converter)
       .def_ro("gains", &ConfigD::gains)
       .def_ro("calibration", &ConfigD::calibration)

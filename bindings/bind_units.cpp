@@ -27,7 +27,7 @@ void bind_units(nb::module_& m) {
           [](Rational* self, const nb::handle& value) {
             new (self) Rational(to_valid_rational(value, "value", "any unit"));
           },
-          "value"_a,
+          "value"_a.none(),
           nb::sig("def __init__(self, value: float | numbers.Rational | Rational) -> None"),
           "From an int, a fractions.Fraction, or the simplest ratio within 1e-12 of a float.")
       .def_ro("numerator", &Rational::numerator)

@@ -8,6 +8,7 @@
 #include <nanobind/stl/string.h>
 
 #include <cstddef>
+#include <initializer_list>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -238,6 +239,17 @@ Vector<Number> to_vector(const nb::handle& values, const char* name) {
 template <class Number>
 Matrix<Number> to_matrix(const nb::handle& values, const char* name) {
   return to_array<Number, 2>(values, name);
+}
+
+/// Name and properties of a configuration, as a call that would make it.
+inline std::string repr_of(const nb::handle& self, std::initializer_list<const char*> names) {
+  std::string text = nb::cast<std::string>(self.type().attr("__name__")) + "(";
+  const char* separator = "";
+  for (const char* const name : names) {
+    text += separator + std::string(name) + "=" + nb::cast<std::string>(nb::repr(self.attr(name)));
+    separator = ", ";
+  }
+  return text + ")";
 }
 
 void bind_units(nb::module_& m);

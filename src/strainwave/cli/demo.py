@@ -28,9 +28,10 @@ def demo(*, out: Path = Path("demo"), json: bool = False) -> None:
     from rich.table import Table
 
     from strainwave.cli.output import print_json, progress_console, result_console
-    from strainwave.report.demo import STEPS, write_demo
+    from strainwave.report.demo import STEPS, make_folder, write_demo
     from strainwave.reproduce.comparison import tallies, tally_sentence
 
+    make_folder(out)
     with Progress(
         SpinnerColumn(),
         TextColumn("{task.description}"),

@@ -61,6 +61,28 @@ class DemoReport:
     comparisons: tuple[Comparison, ...]
 
 
+def make_folder(folder: Path) -> None:
+    """Make the folder of a report, before anything is computed for it.
+
+    Parameters
+    ----------
+    folder : Path
+        The folder; it may exist.
+
+    Raises
+    ------
+    InputError
+        If it cannot be made.
+    """
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InputError(
+            f"{folder}: it cannot be made a folder ({(error.strerror or str(error)).lower()}); "
+            "expected a place for the report, choose another one"
+        ) from error
+
+
 def write_demo(
     folder: Path,
     *,
@@ -88,13 +110,7 @@ def write_demo(
     InputError
         If the folder cannot be made or written.
     """
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise InputError(
-            f"{folder}: it cannot be made a folder ({(error.strerror or str(error)).lower()}); "
-            "expected a place for the report, choose another one"
-        ) from error
+    make_folder(folder)
     steps = iter(STEPS)
     on_step(next(steps))
     taghirad = taghirad1999.run()
