@@ -25,7 +25,7 @@ void bind_units(nb::module_& m) {
       .def(
           "__init__",
           [](Rational* self, const nb::handle& value) {
-            new (self) Rational(to_valid_rational(value, "value", "any unit"));
+            new (self) Rational(to_valid_rational(value, "value", ""));
           },
           "value"_a.none(),
           nb::sig("def __init__(self, value: float | numbers.Rational | Rational) -> None"),

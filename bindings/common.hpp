@@ -147,8 +147,8 @@ inline Rational to_valid_rational(const nb::handle& value, const char* parameter
     const nb::object error =
         type(parameter, nb::borrow(value), "",
              std::string("a positive ratio of whole numbers below 2^31, such as 100, 120.5 or "
-                         "Fraction(1, 100), in ") +
-                 unit);
+                         "Fraction(1, 100)") +
+                 (unit[0] == '\0' ? "" : std::string(", in ") + unit));
     PyErr_SetObject(type.ptr(), error.ptr());
     throw nb::python_error();
   }

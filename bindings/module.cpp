@@ -3,7 +3,6 @@
 
 NB_MODULE(_core, m) {
   m.doc() = "The C++ core of strainwave: the same headers that run on the microcontroller.";
-  // NOLINTNEXTLINE(google-build-using-namespace)
   using namespace strainwave::bindings;
   // Objects that a program keeps until it ends are no leak worth a page of warnings to its user.
   nb::set_leak_warnings(false);

@@ -20,7 +20,7 @@ AMPLITUDES = [[1.0, 1.07, 1.15]]
 PHASES_RAD = np.deg2rad([[0.0, -1.5, -0.4]])
 
 
-def gains_of(amplitudes, phases, gauges):  # type: ignore[no-untyped-def]
+def gains_of(amplitudes, phases, gauges):
     positions = equally_spaced_positions_rad(gauges)
     return compensating_gains(compensation_conditions(amplitudes, phases, positions))
 
@@ -128,7 +128,7 @@ def test_fit_recovers_amplitudes_and_phases_within_their_errors() -> None:
     assert fit.amplitude_standard_errors == pytest.approx(0.02 * np.sqrt(2 / 8000), rel=0.05)
 
 
-def three_phasors(degrees):  # type: ignore[no-untyped-def]
+def three_phasors(degrees):
     angle = np.deg2rad(degrees)
     return np.array([np.cos(angle), np.sin(angle)])
 
@@ -217,7 +217,7 @@ def test_gains_keep_the_torque_and_cancel_the_wave(first: list[float], seed: int
     assert result.noise_factor >= 1.0 - 1e-12
 
 
-def fit_of(angle=range(9), *, positions_rad=(0.0,), **options):  # type: ignore[no-untyped-def]
+def fit_of(angle=range(9), *, positions_rad=(0.0,), **options):
     signals = np.zeros((len(angle), len(positions_rad)))
     return fit_fluctuation(signals, np.array(angle), positions_rad=positions_rad, **options)
 
@@ -260,7 +260,7 @@ def fit_of(angle=range(9), *, positions_rad=(0.0,), **options):  # type: ignore[
         ),
     ],
 )
-def test_bad_input_gets_one_sentence(call, words) -> None:  # type: ignore[no-untyped-def]
+def test_bad_input_gets_one_sentence(call, words) -> None:
     with pytest.raises(InputError, match=words) as caught:
         call()
     assert "\n" not in str(caught.value)

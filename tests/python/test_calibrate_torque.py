@@ -141,7 +141,7 @@ def test_weak_but_real_gains_are_fitted() -> None:
         (lambda: consistency([6.6]), "expected at least 2"),
     ],
 )
-def test_bad_input_gets_one_sentence(call, words) -> None:  # type: ignore[no-untyped-def]
+def test_bad_input_gets_one_sentence(call, words) -> None:
     with pytest.raises(InputError, match=words) as caught:
         call()
     assert "\n" not in str(caught.value)

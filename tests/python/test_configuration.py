@@ -79,7 +79,7 @@ def test_protection_is_the_filters_own_unless_the_file_says_otherwise(joint: Joi
 
 
 @pytest.mark.parametrize("build", [gear_of, oscillator_filter_of, calibration_of, sensor_of])
-def test_a_missing_section_is_named(build) -> None:  # type: ignore[no-untyped-def]
+def test_a_missing_section_is_named(build) -> None:
     empty = parse_joint('schema_version = 1\n[joint]\nname = "bare"\n').joint
     with pytest.raises(InputError, match=r'joint "bare": there is no section \[\w+\]; expected'):
         build(empty)

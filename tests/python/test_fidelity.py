@@ -102,7 +102,7 @@ def test_a_filter_that_does_nothing_is_untouched() -> None:
 
 
 def test_a_delay_is_measured() -> None:
-    def three_samples_late(torque, _speed):  # type: ignore[no-untyped-def]
+    def three_samples_late(torque, _speed):
         return np.concatenate([np.zeros(3), torque[:-3]])
 
     measured = pass_through(three_samples_late, [0.5, 7.0, 100.0], motor_speed_rad_s=10.0)
@@ -110,7 +110,7 @@ def test_a_delay_is_measured() -> None:
     assert measured.delay_s == pytest.approx(3e-3, rel=1e-6)
 
 
-def untouched(torque, _speed):  # type: ignore[no-untyped-def]
+def untouched(torque, _speed):
     return torque
 
 
@@ -150,7 +150,7 @@ def test_the_highest_frequency_leaves_room_for_the_delay() -> None:
         ({"settling_s": 1e9}, "settling_s = 1e.09 s is 1e.12 samples: expected at most"),
     ],
 )
-def test_bad_input_of_pass_through_gets_one_sentence(options, words) -> None:  # type: ignore[no-untyped-def]
+def test_bad_input_of_pass_through_gets_one_sentence(options, words) -> None:
     with pytest.raises(InputError, match=words) as caught:
         pass_through(untouched, **{"frequencies_Hz": [1.0], "motor_speed_rad_s": 1.0} | options)
     assert "\n" not in str(caught.value)
@@ -170,7 +170,7 @@ def test_bad_input_of_pass_through_gets_one_sentence(options, words) -> None:  #
         ({"motor_speed_rad_s": None}, "motor_speed_rad_s = a NoneType: expected"),
     ],
 )
-def test_bad_input_of_contact_step_gets_one_sentence(options, words) -> None:  # type: ignore[no-untyped-def]
+def test_bad_input_of_contact_step_gets_one_sentence(options, words) -> None:
     with pytest.raises(InputError, match=words) as caught:
         contact_step(untouched, **{"motor_speed_rad_s": 1.0} | options)
     assert "\n" not in str(caught.value)
