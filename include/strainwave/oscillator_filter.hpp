@@ -200,7 +200,7 @@ inline OscillatorReading<Real> step(const OscillatorFilterConfig<Real, MaxOrders
   } else if (by_angle) {
     reading.status |= detail::take_phase(config, state, sample.motor_phase);
   }
-  const Phase now = angle_known ? sample.motor_phase : state.frame;
+  const Phase now = angle_known ? sample.motor_phase : state.last_phase;
   CosSin<Real> turns[MaxOrders] = {};
   detail::turns_since_frame(config, state, now, turns);
   for (std::size_t a = 0; a < active_orders(config); ++a) {

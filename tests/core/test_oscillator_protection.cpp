@@ -137,6 +137,30 @@ TYPED_TEST(OscillatorProtection, TenMinutesOfCrawlKeepThePhase) {
   EXPECT_GT(worst_Nm, 0.0);
 }
 
+TYPED_TEST(OscillatorProtection, AngleLostAtACrawlLeavesTheRippleWhereItWas) {
+  // Learned at speed, then a crawl at which nothing is learned: the states' frame stays behind
+  // while the motor goes on by half a radian. A sample without an angle must not fall back to that
+  // frame.
+  using Real = TypeParam;
+  OscillatorFilterConfig<Real, 3> config;
+  config.rotation_source = RotationSource::angle;
+  auto state = strainwave::initial_state(config);
+  double angle_rad = 0.0;
+  for (int k = 0; k < 22'000; ++k) {
+    OscillatorSample<Real> sample;
+    sample.measured_torque_Nm = static_cast<Real>(std::cos(2.0 * angle_rad));
+    sample.motor_phase = strainwave::phase_from_radians(angle_rad);
+    sample.phase_valid = k < 21'999;
+    const auto reading = strainwave::step(config, state, sample);
+    if (!sample.phase_valid) {
+      ASSERT_TRUE(has(reading.status, StatusFlag::rotation_invalid));
+      EXPECT_NEAR(reading.torque_Nm, Real(0), Real(0.02));
+      EXPECT_NE(state.frame, state.last_phase);
+    }
+    angle_rad += k < 20'000 ? 0.156 : 0.00025;
+  }
+}
+
 TYPED_TEST(OscillatorProtection, MonthsOfCrawlStayDefined) {
   // The largest order and the longest sum: nothing overflows (checked by the sanitizers).
   using Real = TypeParam;
