@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <limits>
 
+#include "oscillator_examples.hpp"
 #include "strainwave/oscillator_filter.hpp"
 
 namespace {
@@ -15,19 +16,6 @@ namespace {
 using strainwave::OscillatorFilterConfig;
 using strainwave::OscillatorSample;
 using strainwave::RotationSource;
-
-template <class Real, std::size_t MaxOrders>
-OscillatorFilterConfig<Real, MaxOrders> tuned(std::size_t count) {
-  OscillatorFilterConfig<Real, MaxOrders> config;
-  const strainwave::Order orders[8] = {{2, 1},   {4, 1}, {1, 100}, {7, 1},
-                                       {2, 241}, {1, 1}, {6, 1},   {13, 5}};
-  config.order_count = count;
-  for (std::size_t a = 0; a < count; ++a) {
-    config.orders[a] = orders[a];
-    config.process_noise_variance_Nm2[a] = Real(1e-4);
-  }
-  return config;
-}
 
 TEST(OscillatorConfig, PresetsAreThePaperAndNothingElse) {
   const auto six = strainwave::taghirad1999<double, 3>({241, 2});

@@ -8,6 +8,8 @@
 #include <limits>
 #include <vector>
 
+#include "oscillator_examples.hpp"
+
 namespace {
 
 using strainwave::has;
@@ -115,19 +117,6 @@ struct Recording {
     return torque_Nm;
   }
 };
-
-template <class Real, std::size_t MaxOrders>
-OscillatorFilterConfig<Real, MaxOrders> tuned(std::size_t count) {
-  OscillatorFilterConfig<Real, MaxOrders> config;
-  const strainwave::Order orders[8] = {{2, 1},   {4, 1}, {1, 100}, {7, 1},
-                                       {2, 241}, {1, 1}, {6, 1},   {13, 5}};
-  config.order_count = count;
-  for (std::size_t a = 0; a < count; ++a) {
-    config.orders[a] = orders[a];
-    config.process_noise_variance_Nm2[a] = Real(1e-4);
-  }
-  return config;
-}
 
 TEST(OscillatorFilter, PublishedFilterIsTheDenseTextbookForm) {  // T&B 1999, eq. (9)-(14)
   for (const bool six_states : {false, true}) {

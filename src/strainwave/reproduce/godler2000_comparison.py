@@ -64,12 +64,14 @@ def comparisons(result: Godler2000) -> dict[str, tuple[Comparison, ...]]:
     }
 
 
-def _fluctuation(figure: str, build: Build, expected_FS: float, words: str) -> Comparison:
+def _about_FS(
+    figure: str, quantity: str, words: str, ours_FS: float, expected_FS: float
+) -> Comparison:
     return within(
         figure,
-        f"fluctuation of the sum, {build.gauges} gauges",
+        quantity,
         f"{words} ±{100 * expected_FS:g} %FS",
-        100 * build.fluctuation_FS,
+        100 * ours_FS,
         unit="%FS",
         decimals=2,
         expected=100 * expected_FS,
@@ -77,6 +79,11 @@ def _fluctuation(figure: str, build: Build, expected_FS: float, words: str) -> C
         band=ABOUT_WORDS,
         kind="matched",
     )
+
+
+def _fluctuation(figure: str, build: Build, expected_FS: float, words: str) -> Comparison:
+    quantity = f"fluctuation of the sum, {build.gauges} gauges"
+    return _about_FS(figure, quantity, words, build.fluctuation_FS, expected_FS)
 
 
 def _cycles(figure: str, build: Build, harmonic: int, words: str) -> Comparison:
@@ -95,18 +102,8 @@ def _cycles(figure: str, build: Build, harmonic: int, words: str) -> Comparison:
 
 
 def _linearity(figure: str, build: Build, expected_FS: float) -> Comparison:
-    return within(
-        figure,
-        f"linearity error with hysteresis, {build.gauges} gauges",
-        f"about ±{100 * expected_FS:g} %FS",
-        100 * build.linearity_FS,
-        unit="%FS",
-        decimals=2,
-        expected=100 * expected_FS,
-        tolerance=ABOUT,
-        band=ABOUT_WORDS,
-        kind="matched",
-    )
+    quantity = f"linearity error with hysteresis, {build.gauges} gauges"
+    return _about_FS(figure, quantity, "about", build.linearity_FS, expected_FS)
 
 
 def _two_gauges(two: Build) -> tuple[Comparison, ...]:
@@ -212,16 +209,11 @@ def _compensated(result: Godler2000) -> tuple[Comparison, ...]:
             band="a tenth of what fig. 10 leaves",
             kind="found",
         ),
-        within(
+        _about_FS(
             "G fig. 10",
             "fluctuation of the sum, gains adjusted, its harmonics without noise",
-            f"about ±{100 * published.FLUCTUATION_COMPENSATED_FS:g} %FS",
-            100 * half_peak_to_peak(result.three_compensated.periodic_FS),
-            unit="%FS",
-            decimals=2,
-            expected=100 * published.FLUCTUATION_COMPENSATED_FS,
-            tolerance=ABOUT,
-            band=ABOUT_WORDS,
-            kind="matched",
+            "about",
+            half_peak_to_peak(result.three_compensated.periodic_FS),
+            published.FLUCTUATION_COMPENSATED_FS,
         ),
     )
