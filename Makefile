@@ -77,6 +77,10 @@ demo: $(VENV)/.package ## A simulated joint from gauges to a report, in demo/
 docs-images: demo ## The README's picture, made anew by the demo
 	cp demo/before-and-after.svg docs/images/
 
+.PHONY: bench-accuracy
+bench-accuracy: $(VENV)/.package ## All methods on simulated joints and real recordings, one table
+	$(BIN)/python -m benchmarks.accuracy --out benchmarks/results
+
 .PHONY: test
 test: ## Every test but the slow ones; all are run even when one fails
 	@$(MAKE) --no-print-directory --keep-going test-core test-compile-fail test-usage test-python

@@ -19,6 +19,8 @@ void bind_status(nb::module_& m) {
       .value("sample_repeated", StatusFlag::sample_repeated, "fault: the sample was seen before")
       .value("sample_out_of_order", StatusFlag::sample_out_of_order,
              "fault: the sample is older than the last one")
+      .value("time_not_finite", StatusFlag::time_not_finite,
+             "fault: time stamp or interval unusable")
       .value("variance_limited", StatusFlag::variance_limited,
              "limit: covariance cut back to its limit")
       .value("covariance_reset", StatusFlag::covariance_reset,

@@ -260,6 +260,10 @@ void bind_bridge(nb::module_& m);
 void bind_gains(nb::module_& m);
 void bind_calibration(nb::module_& m);
 void bind_oscillator_filter(nb::module_& m);
+void bind_ripple_config(nb::module_& m);
+void bind_ripple_filter(nb::module_& m);
+void bind_ripple_smoother(nb::module_& m);
 void bind_torque_sensor(nb::module_& m);
+void bind_tracking_notch(nb::module_& m);
 
 }  // namespace strainwave::bindings

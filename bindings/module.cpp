@@ -14,5 +14,9 @@ NB_MODULE(_core, m) {
   bind_gains(m);
   bind_calibration(m);
   bind_oscillator_filter(m);
+  bind_ripple_config(m);
+  bind_ripple_filter(m);
+  bind_ripple_smoother(m);
   bind_torque_sensor(m);
+  bind_tracking_notch(m);
 }

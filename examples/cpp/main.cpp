@@ -3,4 +3,4 @@
 
 #include "first.hpp"
 
-int main() { std::printf("%.3f Nm\n", static_cast<double>(torque_Nm(36000, 156.0F))); }
+int main() { std::printf("%.3f Nm\n", static_cast<double>(torque_Nm(36000, 0, 0))); }

@@ -158,4 +158,33 @@ template <class Real>
                                   static_cast<std::uint32_t>(count));
 }
 
+/// Angle of a vector, rad, from -pi to pi; 0 for the zero vector and for what is not finite.
+template <class Real>
+[[nodiscard]] inline Real angle_of(Real cosine, Real sine) {
+  const Real larger = absolute(cosine) > absolute(sine) ? absolute(cosine) : absolute(sine);
+  if (!(larger > Real(0)) || !is_finite(cosine) || !is_finite(sine)) {
+    return Real(0);
+  }
+  // Scaled first, so that squares neither overflow nor vanish.
+  const Real x = cosine / larger;
+  const Real y = sine / larger;
+  const Real length = square_root(x * x + y * y);
+  // A rough angle by octants, then what a rotation back by it leaves: asin(d) = d + d^3/6 +
+  // 3d^5/40.
+  const bool steep = absolute(y) > absolute(x);
+  const Real slope = steep ? absolute(x) / absolute(y) : absolute(y) / absolute(x);
+  Real angle_rad = slope * (Real(0.9724) - Real(0.1919) * slope * slope);
+  angle_rad = steep ? Real(0.5) * pi<Real> - angle_rad : angle_rad;
+  angle_rad = x < Real(0) ? pi<Real> - angle_rad : angle_rad;
+  angle_rad = y < Real(0) ? -angle_rad : angle_rad;
+  const CosSin<Real> rough = cos_sin_of_radians(angle_rad);
+  const Real rest = (y * rough.cosine - x * rough.sine) / length;
+  const Real square = rest * rest;
+  angle_rad += rest * (Real(1) + square * (Real(1) / Real(6) + square * Real(0.075)));
+  if (angle_rad > pi<Real>) {
+    return pi<Real>;
+  }
+  return angle_rad < -pi<Real> ? -pi<Real> : angle_rad;
+}
+
 }  // namespace strainwave

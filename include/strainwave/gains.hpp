@@ -35,7 +35,7 @@ template <class Real, std::size_t MaxGauges>
 [[nodiscard]] constexpr Real weighted_sum(const Gains<Real, MaxGauges>& gains,
                                           const Real* gauge_signals) {
   Real sum = Real(0);
-  for (std::size_t j = 0; j < active_gauges(gains); ++j) {
+  for (std::size_t j = 0; j < MaxGauges && j < gains.count; ++j) {
     sum += gains.values[j] * gauge_signals[j];
   }
   return sum;

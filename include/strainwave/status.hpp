@@ -21,6 +21,7 @@ enum class StatusFlag : std::uint32_t {
   temperature_not_finite = 1U << 4U,      ///< fault: temperature is NaN or infinite
   sample_repeated = 1U << 5U,             ///< fault: the sample was seen before
   sample_out_of_order = 1U << 6U,         ///< fault: the sample is older than the last one
+  time_not_finite = 1U << 7U,             ///< fault: time stamp or interval unusable
   variance_limited = 1U << 12U,           ///< limit: covariance cut back to its limit
   covariance_reset = 1U << 13U,           ///< limit: covariance unusable, set back to its start
   at_rest = 1U << 20U,                    ///< warning: too little travel, adaptation waits

@@ -3,7 +3,16 @@
 /// The chain: converter codes of the gauges in, torque in Nm with the ripple removed out.
 ///
 ///     codes -> volts (bridge.hpp) -> weighted sum (gains.hpp) -> torque (calibration.hpp)
-///           -> ripple removed (oscillator_filter.hpp)
+///           -> ripple removed (ripple_filter.hpp, or oscillator_filter.hpp)
+///
+/// Which filter removes the ripple, the configuration's type says:
+///
+///     RippleSensorConfig   the ripple filter, strainwave's default: needs the motor's angle
+///     TorqueSensorConfig   the oscillator filter as it was published, for comparison and study
+///
+/// Both are the same chain, TorqueChainConfig, and take the same samples.  What the ripple filter
+/// has learned is kept and restored by its own functions (learned_ripple.hpp), on config.filter and
+/// state.filter.
 ///
 /// A configuration that is checked once, a state, and a step that never fails: samples that cannot
 /// be used are rejected, counted and flagged, and the last good torque is held meanwhile.
@@ -16,26 +25,60 @@
 #include "strainwave/calibration.hpp"
 #include "strainwave/gains.hpp"
 #include "strainwave/oscillator_filter.hpp"
+#include "strainwave/ripple_filter.hpp"
 #include "strainwave/status.hpp"
 #include "strainwave/units.hpp"
 
 namespace strainwave {
 
-template <class Real, std::size_t MaxGauges, std::size_t MaxOrders>
-struct TorqueSensorConfig {
+/// Configuration of the chain with one of the filters; what follows are its two forms.
+template <class Real, std::size_t MaxGauges, class FilterConfig>
+struct TorqueChainConfig {
+  static_assert(sizeof(FilterConfig) == 0,
+                "strainwave: FilterConfig must be RippleFilterConfig or OscillatorFilterConfig, "
+                "with the same Real as the chain");
+};
+
+template <class Real, std::size_t MaxGauges, std::size_t MaxPairs>
+struct TorqueChainConfig<Real, MaxGauges, RippleFilterConfig<Real, MaxPairs>> {
   Converter<Real> converter = {};
   Gains<Real, MaxGauges> gains = {};  ///< one gain per channel; a full bridge is one channel
   TorqueCalibration<Real> calibration = {};
-  OscillatorFilterConfig<Real, MaxOrders> filter = {};
+  RippleFilterConfig<Real, MaxPairs> filter = {};
+  /// Time from one sample number to the next, for samples that come without their interval.
+  Real sample_period_s = Real(1e-3);
 };
+
+template <class Real, std::size_t MaxGauges, std::size_t MaxOrders>
+struct TorqueChainConfig<Real, MaxGauges, OscillatorFilterConfig<Real, MaxOrders>> {
+  Converter<Real> converter = {};
+  Gains<Real, MaxGauges> gains = {};  ///< one gain per channel; a full bridge is one channel
+  TorqueCalibration<Real> calibration = {};
+  OscillatorFilterConfig<Real, MaxOrders> filter = {};  ///< the sample period is in here
+};
+
+/// Codes to torque with the ripple filter.  MaxPairs: room for its pairs of coefficients.
+template <class Real, std::size_t MaxGauges, std::size_t MaxPairs>
+using RippleSensorConfig = TorqueChainConfig<Real, MaxGauges, RippleFilterConfig<Real, MaxPairs>>;
+
+/// Codes to torque with the published filter.
+template <class Real, std::size_t MaxGauges, std::size_t MaxOrders>
+using TorqueSensorConfig =
+    TorqueChainConfig<Real, MaxGauges, OscillatorFilterConfig<Real, MaxOrders>>;
 
 template <std::size_t MaxGauges, class Real>
 struct TorqueSensorSample {
   ConverterCode codes[MaxGauges] = {};
   Real expected_torque_Nm = Real(0);
-  Real motor_speed_rad_s = Real(0);
-  Phase motor_phase = {};
-  bool phase_valid = true;
+  Real motor_speed_rad_s = Real(0);  ///< used by the oscillator filter with RotationSource::speed
+  Phase motor_phase = {};            ///< used by the ripple filter, and with RotationSource::angle
+  bool phase_valid = true;           ///< false where the caller has no angle for this sample
+  bool phase_referenced = true;  ///< false: angle from an unknown zero, the ripple filter's frozen
+                                 ///< terms wait
+  /// Time since the sample before by the caller's clock; 0 where it has none: sample numbers and
+  /// sample period then say it.  Below 0, infinite or NaN, the sample is refused.  Used by the
+  /// ripple filter; the oscillator filter goes by samples.
+  Real interval_s = Real(0);
   Real temperature_degC = Real(20);
   /// Counts samples as the converter took them; wraps at 32 bits.  The same number again is a
   /// repeated sample, a larger step a gap.
@@ -53,21 +96,29 @@ struct TorqueReading {
   Status status = 0;
 };
 
-template <class Real, std::size_t MaxGauges, std::size_t MaxOrders>
-struct TorqueSensorState {
-  OscillatorFilterState<Real, MaxOrders> filter = {};
+template <class Real, std::size_t MaxGauges, class FilterConfig>
+struct TorqueChainState {
+  decltype(initial_state(FilterConfig{})) filter = {};
   TorqueReading<Real> last_reading = {};
   TorqueSensorSample<MaxGauges, Real> last_sample = {};
   bool started = false;
-  std::uint32_t older_in_a_row = 0;  ///< samples refused as older since the last one taken
+  std::uint32_t older_in_a_row = 0;   ///< samples refused as older since the last one taken
+  Real refused_interval_s = Real(0);  ///< of samples refused by number since the last one taken
   Real last_temperature_degC = Real(20);
   EventCounters counters = {};
 };
 
+template <class Real, std::size_t MaxGauges, std::size_t MaxPairs>
+using RippleSensorState = TorqueChainState<Real, MaxGauges, RippleFilterConfig<Real, MaxPairs>>;
+
 template <class Real, std::size_t MaxGauges, std::size_t MaxOrders>
-[[nodiscard]] constexpr TorqueSensorState<Real, MaxGauges, MaxOrders> initial_state(
-    const TorqueSensorConfig<Real, MaxGauges, MaxOrders>& config) {
-  TorqueSensorState<Real, MaxGauges, MaxOrders> state;
+using TorqueSensorState =
+    TorqueChainState<Real, MaxGauges, OscillatorFilterConfig<Real, MaxOrders>>;
+
+template <class Real, std::size_t MaxGauges, class FilterConfig>
+[[nodiscard]] constexpr TorqueChainState<Real, MaxGauges, FilterConfig> initial_state(
+    const TorqueChainConfig<Real, MaxGauges, FilterConfig>& config) {
+  TorqueChainState<Real, MaxGauges, FilterConfig> state;
   state.filter = initial_state(config.filter);
   state.last_temperature_degC = config.calibration.reference_temperature_degC;
   return state;
@@ -118,12 +169,119 @@ template <std::size_t MaxGauges, class Real>
   return {};
 }
 
+/// Whether a sample is new by its number, and how many are missing before it.
+template <class Real, std::size_t MaxGauges, class FilterConfig>
+constexpr Succession take_number(TorqueChainState<Real, MaxGauges, FilterConfig>& state,
+                                 const TorqueSensorSample<MaxGauges, Real>& sample) {
+  Succession next;
+  if (sample.sequence_valid && state.last_sample.sequence_valid) {
+    next = succession(state.last_sample.sequence, sample.sequence);
+  }
+  if (has(next.status, StatusFlag::sample_out_of_order) &&
+      ++state.older_in_a_row > most_older_in_a_row) {
+    next = {mask(StatusFlag::samples_missing), most_older_in_a_row};
+  }
+  if ((next.status & fault_mask) == 0U) {
+    state.older_in_a_row = 0;
+  } else if (sample.interval_s > Real(0) && is_finite(sample.interval_s)) {
+    // The caller's clock has gone on; the next sample's interval begins at this one.
+    state.refused_interval_s += sample.interval_s;
+  }
+  return next;
+}
+
+template <class Real>
+[[nodiscard]] constexpr Status take_temperature(const TorqueCalibration<Real>& calibration,
+                                                Real& last_temperature_degC,
+                                                Real temperature_degC) {
+  if (!is_finite(temperature_degC)) {
+    return mask(StatusFlag::temperature_not_finite);
+  }
+  const Real lowest_degC = calibration.minimum_temperature_degC;
+  const Real highest_degC = calibration.maximum_temperature_degC;
+  last_temperature_degC = temperature_degC < lowest_degC ? lowest_degC : temperature_degC;
+  last_temperature_degC = temperature_degC > highest_degC ? highest_degC : last_temperature_degC;
+  return last_temperature_degC == temperature_degC ? 0 : mask(StatusFlag::temperature_out_of_range);
+}
+
+// What the filters take differently follows, an overload for each.
+
+/// Samples that never arrived.
+template <class Real, std::size_t MaxGauges, std::size_t MaxPairs>
+constexpr void pass_over(const RippleSensorConfig<Real, MaxGauges, MaxPairs>& /*config*/,
+                         RippleSensorState<Real, MaxGauges, MaxPairs>& /*state*/,
+                         std::uint32_t /*samples*/) {
+  // The interval that comes with the next sample says it all.
+}
+
+template <class Real, std::size_t MaxGauges, std::size_t MaxOrders>
+constexpr void pass_over(const TorqueSensorConfig<Real, MaxGauges, MaxOrders>& config,
+                         TorqueSensorState<Real, MaxGauges, MaxOrders>& state,
+                         std::uint32_t samples) {
+  skip(config.filter, state.filter, samples);
+}
+
+/// True for a row that the acquisition only repeated: time has passed, but nothing was measured.
+template <class Real, std::size_t MaxGauges, std::size_t MaxPairs>
+[[nodiscard]] constexpr bool is_held(
+    const RippleSensorConfig<Real, MaxGauges, MaxPairs>& /*config*/,
+    const RippleSensorState<Real, MaxGauges, MaxPairs>& /*state*/,
+    const TorqueSensorSample<MaxGauges, Real>& /*sample*/) {
+  return false;  // the ripple filter finds such rows itself
+}
+
+template <class Real, std::size_t MaxGauges, std::size_t MaxOrders>
+[[nodiscard]] constexpr bool is_held(const TorqueSensorConfig<Real, MaxGauges, MaxOrders>& config,
+                                     const TorqueSensorState<Real, MaxGauges, MaxOrders>& state,
+                                     const TorqueSensorSample<MaxGauges, Real>& sample) {
+  const Real travel_rad =
+      absolute(state.filter.smoothed_speed_rad_s) * config.filter.sample_period_s;
+  return !sample.sequence_valid &&
+         travel_rad >= static_cast<Real>(least_travel_of_a_new_sample_rad) &&
+         same_content(active_gauges(config.gains), sample, state.last_sample);
+}
+
+/// The filter's sample but for the torque and what both filters take.
+template <class Real, std::size_t MaxGauges, std::size_t MaxPairs>
+[[nodiscard]] constexpr RippleSample<Real> filter_sample(
+    const RippleSensorConfig<Real, MaxGauges, MaxPairs>& config,
+    RippleSensorState<Real, MaxGauges, MaxPairs>& state,
+    const TorqueSensorSample<MaxGauges, Real>& sample, std::uint32_t missing) {
+  RippleSample<Real> to;
+  to.phase_referenced = sample.phase_referenced;
+  to.interval_s = sample.interval_s;
+  if (sample.interval_s == Real(0)) {
+    to.interval_s = (Real(1) + static_cast<Real>(missing)) * config.sample_period_s;
+  } else if (sample.interval_s > Real(0) && is_finite(sample.interval_s)) {
+    to.interval_s += state.refused_interval_s;
+  } else {
+    return to;  // no time: the filter refuses it, and the clock has not gone on
+  }
+  state.refused_interval_s = Real(0);
+  return to;
+}
+
+template <class Real, std::size_t MaxGauges, std::size_t MaxOrders>
+[[nodiscard]] constexpr OscillatorSample<Real> filter_sample(
+    const TorqueSensorConfig<Real, MaxGauges, MaxOrders>& /*config*/,
+    TorqueSensorState<Real, MaxGauges, MaxOrders>& /*state*/,
+    const TorqueSensorSample<MaxGauges, Real>& sample, std::uint32_t /*missing*/) {
+  OscillatorSample<Real> to;
+  to.motor_speed_rad_s = sample.motor_speed_rad_s;
+  return to;
+}
+
+/// Faults that say that the filter has refused a row as a whole.
+inline constexpr Status refused_row_mask = mask(StatusFlag::sample_repeated) |
+                                           mask(StatusFlag::sample_out_of_order) |
+                                           mask(StatusFlag::time_not_finite);
+
 }  // namespace detail
 
 /// One sample through the whole chain.
-template <class Real, std::size_t MaxGauges, std::size_t MaxOrders>
-inline TorqueReading<Real> step(const TorqueSensorConfig<Real, MaxGauges, MaxOrders>& config,
-                                TorqueSensorState<Real, MaxGauges, MaxOrders>& state,
+template <class Real, std::size_t MaxGauges, class FilterConfig>
+inline TorqueReading<Real> step(const TorqueChainConfig<Real, MaxGauges, FilterConfig>& config,
+                                TorqueChainState<Real, MaxGauges, FilterConfig>& state,
                                 const TorqueSensorSample<MaxGauges, Real>& sample) {
   const std::size_t gauge_count = active_gauges(config.gains);
   bool saturated = false;
@@ -132,31 +290,19 @@ inline TorqueReading<Real> step(const TorqueSensorConfig<Real, MaxGauges, MaxOrd
   }
   TorqueReading<Real> reading = state.last_reading;
   reading.status = 0;
+  std::uint32_t missing = 0;
   if (state.started) {
-    detail::Succession next;
-    if (sample.sequence_valid && state.last_sample.sequence_valid) {
-      next = detail::succession(state.last_sample.sequence, sample.sequence);
-    }
-    if (has(next.status, StatusFlag::sample_out_of_order)) {
-      if (++state.older_in_a_row > most_older_in_a_row) {
-        next = {mask(StatusFlag::samples_missing), most_older_in_a_row};
-      }
-    }
+    const detail::Succession next = detail::take_number(state, sample);
     reading.status |= next.status;
+    missing = next.missing;
     if ((next.status & fault_mask) != 0U) {
       record(state.counters, reading.status);
       return reading;
     }
-    state.older_in_a_row = 0;
-    skip(config.filter, state.filter, next.missing);
-    const Real travel_rad =
-        absolute(state.filter.smoothed_speed_rad_s) * config.filter.sample_period_s;
-    if (!sample.sequence_valid && !saturated &&
-        travel_rad >= static_cast<Real>(least_travel_of_a_new_sample_rad) &&
-        detail::same_content(gauge_count, sample, state.last_sample)) {
-      // Held by the acquisition: time has passed, but nothing was measured.
+    detail::pass_over(config, state, missing);
+    if (!saturated && detail::is_held(config, state, sample)) {
       reading.status |= mask(StatusFlag::sample_repeated);
-      skip(config.filter, state.filter, 1);
+      detail::pass_over(config, state, 1);
       state.last_sample.sequence = sample.sequence;
       record(state.counters, reading.status);
       return reading;
@@ -168,36 +314,24 @@ inline TorqueReading<Real> step(const TorqueSensorConfig<Real, MaxGauges, MaxOrd
   if (saturated) {
     reading.status |= mask(StatusFlag::gauge_saturated);
   }
-  const TorqueCalibration<Real>& calibration = config.calibration;
-  if (is_finite(sample.temperature_degC)) {
-    Real temperature_degC = sample.temperature_degC;
-    if (temperature_degC < calibration.minimum_temperature_degC) {
-      temperature_degC = calibration.minimum_temperature_degC;
-      reading.status |= mask(StatusFlag::temperature_out_of_range);
-    } else if (temperature_degC > calibration.maximum_temperature_degC) {
-      temperature_degC = calibration.maximum_temperature_degC;
-      reading.status |= mask(StatusFlag::temperature_out_of_range);
-    }
-    state.last_temperature_degC = temperature_degC;
-  } else {
-    reading.status |= mask(StatusFlag::temperature_not_finite);
-  }
+  reading.status |= detail::take_temperature(config.calibration, state.last_temperature_degC,
+                                             sample.temperature_degC);
 
   Real volts[MaxGauges] = {};
-  for (std::size_t j = 0; j < gauge_count; ++j) {
+  for (std::size_t j = 0; j < gauge_count && j < MaxGauges; ++j) {
     volts[j] = to_volts(config.converter, sample.codes[j]);
   }
-  OscillatorSample<Real> filter_sample;
-  filter_sample.torque_valid = !saturated;
-  filter_sample.measured_torque_Nm = torque_of_volts_Nm(
-      calibration, weighted_sum(config.gains, volts), state.last_temperature_degC);
-  filter_sample.expected_torque_Nm = sample.expected_torque_Nm;
-  filter_sample.motor_speed_rad_s = sample.motor_speed_rad_s;
-  filter_sample.motor_phase = sample.motor_phase;
-  filter_sample.phase_valid = sample.phase_valid;
-  const OscillatorReading<Real> filtered = step(config.filter, state.filter, filter_sample);
-  if (!saturated && is_usable_torque(filter_sample.measured_torque_Nm)) {
-    reading.torque_measured_Nm = filter_sample.measured_torque_Nm;
+  auto input = detail::filter_sample(config, state, sample, missing);
+  input.torque_valid = !saturated;
+  input.measured_torque_Nm = torque_of_volts_Nm(
+      config.calibration, weighted_sum(config.gains, volts), state.last_temperature_degC);
+  input.expected_torque_Nm = sample.expected_torque_Nm;
+  input.motor_phase = sample.motor_phase;
+  input.phase_valid = sample.phase_valid;
+  const auto filtered = step(config.filter, state.filter, input);
+  if (!saturated && is_usable_torque(input.measured_torque_Nm) &&
+      (filtered.status & detail::refused_row_mask) == 0U) {
+    reading.torque_measured_Nm = input.measured_torque_Nm;
   }
   reading.torque_Nm = filtered.torque_Nm;
   reading.ripple_Nm = filtered.ripple_Nm;
@@ -208,6 +342,15 @@ inline TorqueReading<Real> step(const TorqueSensorConfig<Real, MaxGauges, MaxOrd
 }
 
 /// The same configuration in another precision or capacity; the capacities must hold it.
+template <class Real, std::size_t MaxGauges, std::size_t MaxPairs, class FromReal,
+          std::size_t FromMaxGauges, std::size_t FromMaxPairs>
+[[nodiscard]] constexpr RippleSensorConfig<Real, MaxGauges, MaxPairs> converted(
+    const RippleSensorConfig<FromReal, FromMaxGauges, FromMaxPairs>& from) {
+  return {converted<Real>(from.converter), converted<Real, MaxGauges>(from.gains),
+          converted<Real>(from.calibration), converted<Real, MaxPairs>(from.filter),
+          static_cast<Real>(from.sample_period_s)};
+}
+
 template <class Real, std::size_t MaxGauges, std::size_t MaxOrders, class FromReal,
           std::size_t FromMaxGauges, std::size_t FromMaxOrders>
 [[nodiscard]] constexpr TorqueSensorConfig<Real, MaxGauges, MaxOrders> converted(
@@ -216,9 +359,11 @@ template <class Real, std::size_t MaxGauges, std::size_t MaxOrders, class FromRe
           converted<Real>(from.calibration), converted<Real, MaxOrders>(from.filter)};
 }
 
-template <class Real, std::size_t MaxGauges, std::size_t MaxOrders>
-[[nodiscard]] constexpr Violation<Real> check(
-    const TorqueSensorConfig<Real, MaxGauges, MaxOrders>& config) {
+namespace detail {
+
+template <class Real, std::size_t MaxGauges, class FilterConfig>
+[[nodiscard]] constexpr Violation<Real> check_parts(
+    const TorqueChainConfig<Real, MaxGauges, FilterConfig>& config) {
   if (const auto violation = check(config.converter); !violation.ok()) {
     return violation;
   }
@@ -229,6 +374,24 @@ template <class Real, std::size_t MaxGauges, std::size_t MaxOrders>
     return violation;
   }
   return check(config.filter);
+}
+
+}  // namespace detail
+
+template <class Real, std::size_t MaxGauges, std::size_t MaxPairs>
+[[nodiscard]] constexpr Violation<Real> check(
+    const RippleSensorConfig<Real, MaxGauges, MaxPairs>& config) {
+  // Within the same limits as the oscillator filter's.
+  if (!(config.sample_period_s >= Real(1e-9F)) || config.sample_period_s > Real(1e3F)) {
+    return {"sample_period_s", -1, config.sample_period_s, "s", "a number from 1e-9 to 1000"};
+  }
+  return detail::check_parts(config);
+}
+
+template <class Real, std::size_t MaxGauges, std::size_t MaxOrders>
+[[nodiscard]] constexpr Violation<Real> check(
+    const TorqueSensorConfig<Real, MaxGauges, MaxOrders>& config) {
+  return detail::check_parts(config);
 }
 
 }  // namespace strainwave

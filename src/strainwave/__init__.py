@@ -10,13 +10,17 @@ from strainwave._core import (
     Amplifier,
     Converter,
     EncoderCounter,
+    FrozenTerm,
     Gains,
     GaugeFluctuation,
     Gear,
     GearConfiguration,
+    LearnedRipple,
     OscillatorFilterConfig,
     Phase,
     Rational,
+    RippleFilterConfig,
+    RippleOrder,
     Rosette,
     RotationSource,
     StatusFlag,
@@ -29,6 +33,7 @@ from strainwave._core import (
 )
 from strainwave.errors import ConfigurationError, InputError, StrainwaveError
 from strainwave.filter import FilterResult, OscillatorFilter, oscillator_preset
+from strainwave.ripple_filter import RippleFilter, RippleResult
 from strainwave.sensor import SensorResult, TorqueSensor
 
 __version__ = version("strainwave")
@@ -39,15 +44,21 @@ __all__ = [
     "Converter",
     "EncoderCounter",
     "FilterResult",
+    "FrozenTerm",
     "Gains",
     "GaugeFluctuation",
     "Gear",
     "GearConfiguration",
     "InputError",
+    "LearnedRipple",
     "OscillatorFilter",
     "OscillatorFilterConfig",
     "Phase",
     "Rational",
+    "RippleFilter",
+    "RippleFilterConfig",
+    "RippleOrder",
+    "RippleResult",
     "Rosette",
     "RotationSource",
     "SensorResult",

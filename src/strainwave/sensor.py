@@ -43,19 +43,37 @@ class TorqueSensor:
     Parameters
     ----------
     config : TorqueSensorConfig
-        Converter, gains, calibration, filter.
+        Converter, gains, calibration, and either filter: with a RippleFilterConfig the ripple
+        filter, strainwave's default; with an OscillatorFilterConfig the published one.
+    learned : LearnedRipple, optional
+        Coefficients for the ripple filter to start with, from `learned` of an earlier run or
+        `strainwave.configuration.learned_of`; sensible only where the angle counts from the same
+        zero as then.
     dtype : dtype_like
         float64, or float32 as on a microcontroller.
     """
 
-    def __init__(self, config: _core.TorqueSensorConfig, *, dtype: DTypeLike = np.float64) -> None:
+    def __init__(
+        self,
+        config: _core.TorqueSensorConfig,
+        learned: _core.LearnedRipple | None = None,
+        *,
+        dtype: DTypeLike = np.float64,
+    ) -> None:
         if not isinstance(config, _core.TorqueSensorConfig):
             raise InputError(
                 f"config = {config!r}: expected a TorqueSensorConfig; make one, or take that of a "
                 "joint file from strainwave.configuration.sensor_of(joint)"
             )
+        if learned is not None and not isinstance(learned, _core.LearnedRipple):
+            raise InputError(
+                f"learned = {learned!r}: expected a LearnedRipple; take one from a sensor's "
+                "learned()"
+            )
         self._dtype = precision(dtype)
-        self._sensor = _core.TorqueSensor(config, single_precision=self._dtype is np.float32)
+        self._sensor = _core.TorqueSensor(
+            config, single_precision=self._dtype is np.float32, learned=learned
+        )
 
     @property
     def config(self) -> _core.TorqueSensorConfig:
@@ -76,6 +94,8 @@ class TorqueSensor:
         expected_torque_Nm: ArrayLike | None = None,
         temperature_degC: ArrayLike | None = None,
         sequence: ArrayLike | None = None,
+        time_s: ArrayLike | None = None,
+        angle_referenced: bool = True,
     ) -> SensorResult:
         """Run samples through the chain; the state goes on to the next call.
 
@@ -84,9 +104,10 @@ class TorqueSensor:
         codes : array_like
             Converter codes, shape (samples, channels), whole numbers.
         motor_speed_rad_s : array_like, optional
-            Motor speed, rad/s; needed where the filter turns by speed.
+            Motor speed, rad/s; needed where the oscillator filter turns by speed.
         motor_angle_rad : array_like, optional
-            Motor angle, rad, not wrapped; needed where the filter turns by angle.
+            Motor angle, rad, not wrapped; needed by the ripple filter, and where the oscillator
+            filter turns by angle. NaN where it is not known.
         expected_torque_Nm : array_like, optional
             Expected torque, Nm; 0 without.
         temperature_degC : array_like, optional
@@ -94,6 +115,14 @@ class TorqueSensor:
         sequence : array_like, optional
             Sample numbers, modulo 2^32: the same again is a repeated sample, a larger step a gap.
             Counted up by one without.
+        time_s : array_like, optional
+            Time stamps as recorded, s, for the ripple filter. Jitter and gaps are taken as they
+            are; a sample that is not later than the one before is rejected. Without, samples are
+            `config.sample_period_s` apart. The oscillator filter goes by samples and does not use
+            them.
+        angle_referenced : bool
+            False where the angle counts from an unknown zero: the ripple filter's frozen terms
+            then wait.
 
         Returns
         -------
@@ -117,11 +146,28 @@ class TorqueSensor:
                 optional_contiguous("expected_torque_Nm", expected_torque_Nm, dtype),
                 optional_contiguous("temperature_degC", temperature_degC, dtype),
                 optional_contiguous("sequence", sequence, np.uint32),
+                optional_contiguous("time_s", time_s, np.float64),
+                bool(angle_referenced),
             )
         )
 
+    def learned(self) -> _core.LearnedRipple:
+        """Coefficients of the ripple filter as they are now, to keep over a power cycle.
+
+        Returns
+        -------
+        LearnedRipple
+            Coefficients against the motor's angle, with standard deviations.
+
+        Raises
+        ------
+        InputError
+            If the filter is the oscillator filter.
+        """
+        return self._sensor.learned()
+
     def reset(self) -> None:
-        """Go back to the state at power-up."""
+        """Go back to the state at power-up, with the coefficients given there."""
         self._sensor.reset()
 
     def copy(self) -> TorqueSensor:

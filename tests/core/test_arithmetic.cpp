@@ -133,4 +133,68 @@ TYPED_TEST(Arithmetic, EvaluatesInConstantExpressions) {
   static_assert(cos_sin_of_radians(TypeParam(0)).cosine == TypeParam(1));
 }
 
+TYPED_TEST(Arithmetic, AngleOfAVectorIsItsArcTangent) {
+  double worst = 0.0;
+  for (int i = -100'000; i <= 100'000; ++i) {
+    const long double angle = 3.1415L * static_cast<long double>(i) / 100'000.0L;
+    for (const double length : {1.0, 1e-3, 7e5}) {
+      const auto x = static_cast<TypeParam>(length * static_cast<double>(std::cos(angle)));
+      const auto y = static_cast<TypeParam>(length * static_cast<double>(std::sin(angle)));
+      const long double expected =
+          std::atan2(static_cast<long double>(y), static_cast<long double>(x));
+      worst = std::max(worst, error_in_epsilon(strainwave::angle_of(x, y), expected));
+    }
+  }
+  EXPECT_LT(worst, 4.0);  // an angle near pi is rounded to 2 by itself
+  EXPECT_GT(worst, 0.25);
+}
+
+TYPED_TEST(Arithmetic, AngleOfAVectorOnTheAxesAndDiagonals) {
+  using strainwave::angle_of;
+  const double pi = 3.14159265358979323846;
+  const TypeParam one = 1;
+  const double tolerance = 4.0 * static_cast<double>(std::numeric_limits<TypeParam>::epsilon());
+  for (std::size_t at = 0; at < 8; ++at) {
+    const int x[8] = {-1, 0, 1, 1, 1, 0, -1, -1};  // octants -3 to 4
+    const int y[8] = {-1, -1, -1, 0, 1, 1, 1, 0};
+    const double octant = static_cast<double>(at) - 3.0;
+    EXPECT_NEAR(static_cast<double>(angle_of(one * static_cast<TypeParam>(x[at]),
+                                             one * static_cast<TypeParam>(y[at]))),
+                octant * pi / 4.0, tolerance)
+        << octant;
+  }
+  EXPECT_EQ(angle_of(one, TypeParam(0)), TypeParam(0));
+}
+
+TYPED_TEST(Arithmetic, AngleOfVectorsOfEveryLength) {
+  using Limits = std::numeric_limits<TypeParam>;
+  using strainwave::angle_of;
+  const double eighth = 0.78539816339744830962;
+  for (const TypeParam size : {Limits::max(), Limits::min(), TypeParam(1e-30), TypeParam(1e30)}) {
+    EXPECT_NEAR(static_cast<double>(angle_of(size, size)), eighth, 1e-6);
+    EXPECT_NEAR(static_cast<double>(angle_of(-size, -size)), -3.0 * eighth, 1e-6);
+    EXPECT_EQ(angle_of(size, TypeParam(0)), TypeParam(0));
+  }
+  EXPECT_NEAR(static_cast<double>(angle_of(Limits::max(), Limits::min())), 0.0, 1e-30);
+  EXPECT_EQ(angle_of(TypeParam(0), TypeParam(0)), TypeParam(0));
+  const TypeParam strange[] = {Limits::quiet_NaN(), Limits::infinity(), -Limits::infinity()};
+  for (const TypeParam value : strange) {
+    for (const TypeParam other : {TypeParam(0), TypeParam(1), TypeParam(-2), value}) {
+      EXPECT_EQ(angle_of(value, other), TypeParam(0));
+      EXPECT_EQ(angle_of(other, value), TypeParam(0));
+    }
+  }
+}
+
+TYPED_TEST(Arithmetic, AngleOfAVectorNeverLeavesItsRange) {
+  for (int i = 0; i < 2000; ++i) {
+    const TypeParam small = static_cast<TypeParam>(i) * std::numeric_limits<TypeParam>::epsilon();
+    for (const TypeParam y : {small, -small}) {
+      const TypeParam angle = strainwave::angle_of(TypeParam(-1), y);
+      ASSERT_LE(std::fabs(angle), strainwave::pi<TypeParam>);
+      ASSERT_GT(std::fabs(angle), TypeParam(3.1));
+    }
+  }
+}
+
 }  // namespace

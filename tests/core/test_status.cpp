@@ -20,6 +20,7 @@ TEST(Status, NumbersThatLogsKeep) {
   EXPECT_EQ(mask(StatusFlag::temperature_not_finite), 16U);
   EXPECT_EQ(mask(StatusFlag::sample_repeated), 32U);
   EXPECT_EQ(mask(StatusFlag::sample_out_of_order), 64U);
+  EXPECT_EQ(mask(StatusFlag::time_not_finite), 128U);
   EXPECT_EQ(mask(StatusFlag::variance_limited), 0x1000U);
   EXPECT_EQ(mask(StatusFlag::covariance_reset), 0x2000U);
   EXPECT_EQ(mask(StatusFlag::at_rest), 0x100000U);

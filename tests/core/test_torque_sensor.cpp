@@ -15,31 +15,69 @@ using strainwave::StatusFlag;
 using strainwave::TorqueReading;
 
 template <class Real>
-using Config = strainwave::TorqueSensorConfig<Real, 4, 3>;
-template <class Real>
-using State = strainwave::TorqueSensorState<Real, 4, 3>;
-template <class Real>
 using Sample = strainwave::TorqueSensorSample<4, Real>;
 
 constexpr double speed_rad_s = 150.0;
 
-template <class Real>
-Config<Real> two_gauges() {
-  Config<Real> config;
+/// Everything of the chain but its filter: two gauges that count half each.
+template <class Config>
+Config two_gauges() {
+  using Real = decltype(Config{}.calibration.gain_Nm_per_V);
+  Config config;
   config.converter = {16, Real(-10), Real(10), -32768};
   config.gains = {2, {Real(0.5), Real(0.5)}};
   config.calibration.gain_Nm_per_V = Real(6.6);
   config.filter.order_count = 2;
-  config.filter.orders[1] = {4, 1};
-  config.filter.process_noise_variance_Nm2[0] = Real(1e-4);
-  config.filter.process_noise_variance_Nm2[1] = Real(1e-4);
   return config;
 }
 
+/// The chain with the published filter, for orders 2 and 4.
+template <class RealT>
+struct Oscillator {
+  using Real = RealT;
+  using Config = strainwave::TorqueSensorConfig<Real, 4, 3>;
+  using State = strainwave::TorqueSensorState<Real, 4, 3>;
+
+  static Config config() {
+    auto config = two_gauges<Config>();
+    config.filter.orders[1] = {4, 1};
+    config.filter.process_noise_variance_Nm2[0] = Real(1e-4);
+    config.filter.process_noise_variance_Nm2[1] = Real(1e-4);
+    return config;
+  }
+  static void turn_by(Config& config, RotationSource source) {
+    config.filter.rotation_source = source;
+  }
+  static const char* spoil_filter(Config& config) {
+    config.filter.measurement_noise_variance_Nm2 = Real(-1);
+    return "measurement_noise_variance_Nm2";
+  }
+};
+
+/// The chain with the ripple filter, for the same orders.
+template <class RealT>
+struct Ripple {
+  using Real = RealT;
+  using Config = strainwave::RippleSensorConfig<Real, 4, 3>;
+  using State = strainwave::RippleSensorState<Real, 4, 3>;
+
+  static Config config() {
+    auto config = two_gauges<Config>();
+    config.filter.orders[1].order = {4, 1};
+    return config;
+  }
+  static void turn_by(Config& /*config*/, RotationSource /*source*/) {}  // always by angle
+  static const char* spoil_filter(Config& config) {
+    config.filter.torque_noise_Nm = Real(-1);
+    return "torque_noise_Nm";
+  }
+};
+
 /// Sample k of a joint that turns at constant speed: ripple of order 2 over a torque of 13.2 Nm,
 /// which the filter is told to expect.
-template <class Real>
-Sample<Real> sample_at(const Config<Real>& config, int k) {
+template <class Config>
+auto sample_at(const Config& config, int k) {
+  using Real = decltype(config.calibration.gain_Nm_per_V);
   Sample<Real> sample;
   const double angle_rad = speed_rad_s * 1e-3 * k;
   const double ripple_V = 0.4 * std::cos(2 * angle_rad);
@@ -53,15 +91,16 @@ Sample<Real> sample_at(const Config<Real>& config, int k) {
   return sample;
 }
 
-template <class Real>
+template <class Filter>
 class TorqueSensor : public testing::Test {
  protected:
-  Config<Real> config = two_gauges<Real>();
-  State<Real> state = strainwave::initial_state(config);
+  using Reading = TorqueReading<typename Filter::Real>;
+  Filter::Config config = Filter::config();
+  Filter::State state = strainwave::initial_state(config);
   int k = 0;
 
-  TorqueReading<Real> next() { return take(sample_at(config, k)); }
-  TorqueReading<Real> take(const Sample<Real>& sample) {
+  Reading next() { return take(sample_at(config, k)); }
+  Reading take(const Sample<typename Filter::Real>& sample) {
     ++k;
     return strainwave::step(config, state, sample);
   }
@@ -70,15 +109,17 @@ class TorqueSensor : public testing::Test {
       (void)next();
     }
   }
-  void expect_clean(const TorqueReading<Real>& reading) {
+  void expect_clean(const Reading& reading) {
     EXPECT_EQ(reading.status & strainwave::fault_mask, 0U);
-    EXPECT_NEAR(reading.torque_Nm, Real(13.2), Real(0.01));
+    EXPECT_NEAR(reading.torque_Nm, 13.2, 0.01);
   }
 };
-using Precisions = testing::Types<float, double>;
-TYPED_TEST_SUITE(TorqueSensor, Precisions);
+using Filters =
+    testing::Types<Oscillator<float>, Oscillator<double>, Ripple<float>, Ripple<double>>;
+TYPED_TEST_SUITE(TorqueSensor, Filters);
 
 TYPED_TEST(TorqueSensor, ChainFromCodesToCleanTorque) {
+  using Real = TypeParam::Real;
   this->settle();
   for (int i = 0; i < 100; ++i) {
     const double angle_rad = speed_rad_s * 1e-3 * this->k;
@@ -87,14 +128,15 @@ TYPED_TEST(TorqueSensor, ChainFromCodesToCleanTorque) {
     EXPECT_NEAR(static_cast<double>(reading.torque_measured_Nm),
                 13.2 + 6.6 * 0.4 * std::cos(2 * angle_rad), 2e-3);  // a code is 2 mNm
     EXPECT_NEAR(static_cast<double>(reading.ripple_Nm), 2.64 * std::cos(2 * angle_rad), 0.01);
-    EXPECT_NEAR(reading.torque_Nm, TypeParam(13.2), TypeParam(0.01));
+    EXPECT_NEAR(reading.torque_Nm, Real(13.2), Real(0.01));
   }
 }
 
 TYPED_TEST(TorqueSensor, SaturatedGaugeHoldsTheTorqueAndFreezesLearning) {
   this->settle();
   const auto before = this->next();
-  for (const std::int32_t code : {32767, -32768}) {
+  using Limits = std::numeric_limits<std::int32_t>;
+  for (const std::int32_t code : {32767, -32768, Limits::max(), Limits::min()}) {
     auto sample = sample_at(this->config, this->k);
     sample.codes[1].value = code;
     const auto reading = this->take(sample);
@@ -102,22 +144,8 @@ TYPED_TEST(TorqueSensor, SaturatedGaugeHoldsTheTorqueAndFreezesLearning) {
     EXPECT_EQ(reading.torque_Nm, before.torque_Nm);
     EXPECT_EQ(reading.torque_measured_Nm, before.torque_measured_Nm);
   }
-  EXPECT_EQ(this->state.counters.faults, 2U);
-  EXPECT_EQ(this->state.counters.by_bit[3], 2U);
-  this->expect_clean(this->next());
-}
-
-TYPED_TEST(TorqueSensor, WildestCodesAreRejected) {
-  this->settle();
-  const auto before = this->next();
-  for (const std::int32_t code :
-       {std::numeric_limits<std::int32_t>::max(), std::numeric_limits<std::int32_t>::min()}) {
-    auto sample = sample_at(this->config, this->k);
-    sample.codes[0].value = code;
-    const auto reading = this->take(sample);
-    EXPECT_TRUE(has(reading.status, StatusFlag::gauge_saturated));
-    EXPECT_EQ(reading.torque_Nm, before.torque_Nm);
-  }
+  EXPECT_EQ(this->state.counters.faults, 4U);
+  EXPECT_EQ(this->state.counters.by_bit[3], 4U);
   this->expect_clean(this->next());
 }
 
@@ -145,13 +173,14 @@ TYPED_TEST(TorqueSensor, HeldSampleIsFlaggedAndTimeGoesOn) {
 }
 
 TYPED_TEST(TorqueSensor, StandingEncoderAtCrawlIsNoFault) {
+  using Real = TypeParam::Real;
   // 0.1 rad/s and 4096 counts a turn: the encoder moves every 15th sample, and a quiet gauge keeps
   // its code meanwhile.  Nothing is wrong with such samples.
   int faults = 0;
   for (int i = 0; i < 1000; ++i) {
-    Sample<TypeParam> sample = sample_at(this->config, 0);
+    Sample<Real> sample = sample_at(this->config, 0);
     sample.sequence = static_cast<std::uint32_t>(i);
-    sample.motor_speed_rad_s = TypeParam(0.1);
+    sample.motor_speed_rad_s = Real(0.1);
     sample.motor_phase = strainwave::phase_from_counts(i / 15, 4096);
     faults += (this->take(sample).status & strainwave::fault_mask) != 0U ? 1 : 0;
   }
@@ -162,7 +191,9 @@ TYPED_TEST(TorqueSensor, GapIsFlaggedAndBridged) {
   this->settle();
   this->k += 20;
   const auto reading = this->next();
-  EXPECT_EQ(reading.status, strainwave::mask(StatusFlag::samples_missing));
+  // The angle alone does not say how often an order has turned meanwhile.
+  EXPECT_EQ(reading.status & ~strainwave::mask(StatusFlag::order_above_nyquist),
+            strainwave::mask(StatusFlag::samples_missing));
   this->expect_clean(reading);
 }
 
@@ -188,20 +219,21 @@ TYPED_TEST(TorqueSensor, TenOlderSamplesAreIgnoredAndTheEleventhIsANewCount) {
 }
 
 TYPED_TEST(TorqueSensor, FreshSamplesOfACoarseConverterAreNoFaults) {
+  using Real = TypeParam::Real;
   // 12 bits, no noise, 30 rad/s: most codes are those of the sample before.
   auto coarse = this->config;
-  coarse.converter = {12, TypeParam(-10), TypeParam(10), 0};
+  coarse.converter = {12, Real(-10), Real(10), 0};
   for (const bool numbered : {true, false}) {
     auto started = strainwave::initial_state(coarse);
     int faults = 0;
     for (int n = 0; n < 4000; ++n) {
-      Sample<TypeParam> sample;
+      Sample<Real> sample;
       const double angle_rad = 0.03 * n;
-      const auto volts = static_cast<TypeParam>(2.0 + 0.02 * std::sin(2.0 * angle_rad));
+      const auto volts = static_cast<Real>(2.0 + 0.02 * std::sin(2.0 * angle_rad));
       for (std::size_t j = 0; j < coarse.gains.count; ++j) {
         sample.codes[j] = strainwave::to_code(coarse.converter, volts);
       }
-      sample.motor_speed_rad_s = TypeParam(30);
+      sample.motor_speed_rad_s = Real(30);
       sample.motor_phase = strainwave::phase_from_counts(
           static_cast<std::int64_t>(std::floor(angle_rad / 6.283185307179586 * 4096.0)), 4096);
       sample.sequence = static_cast<std::uint32_t>(n);
@@ -222,11 +254,12 @@ TYPED_TEST(TorqueSensor, SequenceWrapsAt32Bits) {
 }
 
 TYPED_TEST(TorqueSensor, OneWrongSequenceNumberDoesNotStopTheSensor) {
+  using Real = TypeParam::Real;
   this->settle();
   auto wrong = sample_at(this->config, this->k);
   wrong.sequence += 1U << 30U;  // one flipped bit on the bus
   (void)this->take(wrong);
-  TorqueReading<TypeParam> reading;
+  TorqueReading<Real> reading;
   for (int i = 0; i < 1000; ++i) {
     reading = this->next();
   }
@@ -234,8 +267,9 @@ TYPED_TEST(TorqueSensor, OneWrongSequenceNumberDoesNotStopTheSensor) {
 }
 
 TYPED_TEST(TorqueSensor, CounterThatStartsAgainDoesNotStopTheSensor) {
+  using Real = TypeParam::Real;
   this->settle();
-  TorqueReading<TypeParam> reading;
+  TorqueReading<Real> reading;
   for (std::uint32_t i = 0; i < 1000; ++i) {  // the drive was switched off and on
     auto sample = sample_at(this->config, this->k);
     sample.sequence = i;
@@ -245,32 +279,34 @@ TYPED_TEST(TorqueSensor, CounterThatStartsAgainDoesNotStopTheSensor) {
 }
 
 TYPED_TEST(TorqueSensor, TemperatureIsHeldOrLimited) {
-  this->config.calibration.gain_drift_per_K = TypeParam(0.001);
-  this->config.calibration.maximum_temperature_degC = TypeParam(60);
-  const TypeParam nan = std::numeric_limits<TypeParam>::quiet_NaN();
-  const auto at = [this](TypeParam temperature_degC) {
+  using Real = TypeParam::Real;
+  this->config.calibration.gain_drift_per_K = Real(0.001);
+  this->config.calibration.maximum_temperature_degC = Real(60);
+  const Real nan = std::numeric_limits<Real>::quiet_NaN();
+  const auto at = [this](Real temperature_degC) {
     auto sample = sample_at(this->config, this->k);
     sample.codes[0] = sample.codes[1];
     sample.temperature_degC = temperature_degC;
     return this->take(sample);
   };
-  const auto tolerance = TypeParam(2e-3);
-  EXPECT_NEAR(at(TypeParam(30)).torque_measured_Nm, TypeParam(13.2 * 1.01), tolerance);
+  const auto tolerance = Real(2e-3);
+  EXPECT_NEAR(at(Real(30)).torque_measured_Nm, Real(13.2 * 1.01), tolerance);
   auto reading = at(nan);
   EXPECT_TRUE(has(reading.status, StatusFlag::temperature_not_finite));
-  EXPECT_NEAR(reading.torque_measured_Nm, TypeParam(13.2 * 1.01), tolerance);
-  reading = at(TypeParam(1000));
+  EXPECT_NEAR(reading.torque_measured_Nm, Real(13.2 * 1.01), tolerance);
+  reading = at(Real(1000));
   EXPECT_TRUE(has(reading.status, StatusFlag::temperature_out_of_range));
-  EXPECT_NEAR(reading.torque_measured_Nm, TypeParam(13.2 * 1.04), tolerance);
-  reading = at(-std::numeric_limits<TypeParam>::infinity());
+  EXPECT_NEAR(reading.torque_measured_Nm, Real(13.2 * 1.04), tolerance);
+  reading = at(-std::numeric_limits<Real>::infinity());
   EXPECT_TRUE(has(reading.status, StatusFlag::temperature_not_finite));
 }
 
 TYPED_TEST(TorqueSensor, WildInputsKeepEveryOutputFinite) {
-  using Limits = std::numeric_limits<TypeParam>;
-  const TypeParam wild[] = {Limits::quiet_NaN(), Limits::infinity(), -Limits::infinity(),
-                            Limits::max(),       Limits::lowest(),   Limits::denorm_min(),
-                            TypeParam(1e30),     TypeParam(-1e15),   TypeParam(0)};
+  using Real = TypeParam::Real;
+  using Limits = std::numeric_limits<Real>;
+  const Real wild[] = {Limits::quiet_NaN(), Limits::infinity(), -Limits::infinity(),
+                       Limits::max(),       Limits::lowest(),   Limits::denorm_min(),
+                       Real(1e30),          Real(-1e15),        Real(0)};
   std::uint32_t random = 7;
   const auto draw = [&random](std::uint32_t count) {
     random = random * 1664525U + 1013904223U;
@@ -286,8 +322,8 @@ TYPED_TEST(TorqueSensor, WildInputsKeepEveryOutputFinite) {
     sample.phase_valid = draw(2) == 0;
     sample.motor_phase = {static_cast<std::int64_t>(draw(65536)) << draw(40), draw(65536) << 16U};
     sample.codes[draw(2)].value = static_cast<std::int32_t>(draw(65536)) - 32768;
-    this->config.filter.rotation_source =
-        draw(2) == 0 ? RotationSource::speed : RotationSource::angle;
+    sample.interval_s = wild[draw(9)];
+    TypeParam::turn_by(this->config, draw(2) == 0 ? RotationSource::speed : RotationSource::angle);
     const auto reading = this->take(sample);
     ASSERT_TRUE(strainwave::is_finite(reading.torque_Nm)) << i;
     ASSERT_TRUE(strainwave::is_finite(reading.torque_measured_Nm)) << i;
@@ -300,15 +336,15 @@ TYPED_TEST(TorqueSensor, WildInputsKeepEveryOutputFinite) {
 }
 
 TYPED_TEST(TorqueSensor, RecoversFromWildInputsWithinFourThousandSamples) {
+  using Real = TypeParam::Real;
   this->settle();
   for (int i = 0; i < 500; ++i) {
     auto sample = sample_at(this->config, this->k);
-    sample.expected_torque_Nm =
-        i % 2 == 0 ? std::numeric_limits<TypeParam>::quiet_NaN() : TypeParam(1e6);
-    sample.motor_speed_rad_s = i % 3 == 0 ? TypeParam(-2e3) : TypeParam(1e30);
+    sample.expected_torque_Nm = i % 2 == 0 ? std::numeric_limits<Real>::quiet_NaN() : Real(1e6);
+    sample.motor_speed_rad_s = i % 3 == 0 ? Real(-2e3) : Real(1e30);
     (void)this->take(sample);
   }
-  TorqueReading<TypeParam> reading;
+  TorqueReading<Real> reading;
   for (int i = 0; i < 4000; ++i) {
     reading = this->next();
   }
@@ -316,23 +352,25 @@ TYPED_TEST(TorqueSensor, RecoversFromWildInputsWithinFourThousandSamples) {
 }
 
 TYPED_TEST(TorqueSensor, CheckReachesEveryPart) {
-  auto changed = two_gauges<TypeParam>();
+  using Real = TypeParam::Real;
+  auto changed = TypeParam::config();
   EXPECT_TRUE(check(changed).ok());
   changed.converter.bits = 0;
   EXPECT_STREQ(check(changed).parameter, "bits");
-  changed = two_gauges<TypeParam>();
+  changed = TypeParam::config();
   changed.gains.count = 5;
   EXPECT_STREQ(check(changed).parameter, "gains");
-  changed = two_gauges<TypeParam>();
-  changed.calibration.gain_Nm_per_V = TypeParam(0);
+  changed = TypeParam::config();
+  changed.calibration.gain_Nm_per_V = Real(0);
   EXPECT_STREQ(check(changed).parameter, "gain_Nm_per_V");
-  changed = two_gauges<TypeParam>();
-  changed.filter.measurement_noise_variance_Nm2 = TypeParam(-1);
-  EXPECT_STREQ(check(changed).parameter, "measurement_noise_variance_Nm2");
+  changed = TypeParam::config();
+  const char* const spoilt = TypeParam::spoil_filter(changed);
+  EXPECT_STREQ(check(changed).parameter, spoilt);
 }
 
-TEST(TorqueSensorPrecision, FloatFollowsDouble) {
-  const auto config = two_gauges<double>();
+template <class Filter>
+void expect_float_follows_double() {
+  const auto config = Filter::config();
   const auto config_float = strainwave::converted<float, 4, 3>(config);
   auto state = strainwave::initial_state(config);
   auto state_float = strainwave::initial_state(config_float);
@@ -348,6 +386,11 @@ TEST(TorqueSensorPrecision, FloatFollowsDouble) {
   }
   EXPECT_LT(worst, 1e-4);
   EXPECT_GT(worst, 1e-9);
+}
+
+TEST(TorqueSensorPrecision, FloatFollowsDouble) {
+  expect_float_follows_double<Oscillator<double>>();
+  expect_float_follows_double<Ripple<double>>();
 }
 
 }  // namespace

@@ -13,7 +13,7 @@ from strainwave.joint import (
     Joint,
     Misalignment,
     MisalignmentTerm,
-    RippleFilter,
+    OscillatorFilter,
     Signals,
     Temperature,
     TorqueCalibration,
@@ -23,7 +23,7 @@ from strainwave.joint import (
 
 def test_sections_that_need_the_gear() -> None:
     identity = Identity(name="elbow")
-    ripple_filter = RippleFilter.model_validate(
+    ripple_filter = OscillatorFilter.model_validate(
         {**OSCILLATOR, "orders": ("1/R",), "provenance": PROVENANCE}
     )
     with pytest.raises(ValidationError, match=r'has the order "1/R".* no section \[gear\]'):
@@ -72,7 +72,7 @@ def test_a_section_of_a_joint_has_its_provenance() -> None:
         "gauges": gauges(1),
         "gains": Gains(gains=(1.0,)),
         "torque_calibration": TorqueCalibration(gain_Nm_per_V=1.0),
-        "ripple_filter": RippleFilter.model_validate({**OSCILLATOR, "orders": (2,)}),
+        "ripple_filter": OscillatorFilter.model_validate({**OSCILLATOR, "orders": (2,)}),
         "misalignment": Misalignment(
             terms=(MisalignmentTerm(cycles_per_output_turn=1, cosine_Nm=1.0, sine_Nm=0.0),)
         ),

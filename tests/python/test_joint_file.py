@@ -200,7 +200,7 @@ def test_a_change_that_would_contradict_the_rest_changes_nothing() -> None:
 
 def test_a_section_takes_its_own_model_only() -> None:
     joint_file = new_joint("a")
-    with pytest.raises(TypeError, match=r"section \[gains\]: expected a Gains, got Gear"):
+    with pytest.raises(TypeError, match=r"section \[gains\]: expected Gains, got Gear"):
         joint_file.set_section("gains", GEAR, PROVENANCE)
     with pytest.raises(InputError, match=r"\[joint\] is not a section that can be filled"):
         joint_file.set_section("joint", GEAR, PROVENANCE)

@@ -85,7 +85,28 @@ def message_of(text: str) -> str:
         ("[1.0586, 0.9966, 0.9448]", "[1.0, 1.0]", ["2 gains but 3 torque_sensitivities"]),
         ("[0.0, -0.004]", str([0.1] * 5), ["linearisation", "a list of at most 4"]),
         ('[2, 4, "1/R"]', '[2, "R"]', ['orders, entry 2 = "R"', '"1/100"']),
-        ('method = "oscillator"', 'method = "magic"', ['method = "magic"', '"oscillator"']),
+        ('[2, 4, "1/R"]', '[2, "m"]', ['[ripple_filter] orders, entry 2 = "m"', '"2m"']),
+        (
+            "variances_Nm2 = [1000.0]",
+            "variances_Nm2 = [-1.0]",
+            ["[ripple_filter] process_noise_variances_Nm2, entry 1 = -1.0", "at least 0, in Nm^2"],
+        ),
+        (
+            "sample_period_s = 0.001",
+            "memory_turns = 30",
+            ['[ripple_filter] has the unknown key "memory_turns"', "known are provenance, method"],
+        ),
+        (
+            'method = "oscillator"',
+            'method = "magic"',
+            ['[ripple_filter] method = "magic": expected "oscillator" or "ripple" (the filter'],
+        ),
+        ('method = "oscillator"', "method = 3", ['[ripple_filter] method = 3: expected "osc']),
+        (
+            'method = "oscillator"\n',
+            "",
+            ['[ripple_filter] lacks the key "method" (the filter', 'as "oscillator" or "ripple"'],
+        ),
         ("2026-11-01T08:30:00Z", "2026-11-01T08:30:00", ["[gear.provenance] created", "zone"]),
         ("2026-11-01T08:30:00Z", "2026-11-01", ["[gear.provenance] created", "date and time"]),
         ("2026-11-01T08:30:00Z", '"today"', ['created = "today"', "2026-11-01T12:00:00Z"]),
@@ -226,6 +247,14 @@ def test_values_from_a_person() -> None:
             {"configuration": "fixed_flexspline", "ratio": -1, "rated_torque_Nm": 1},
             "command line",
         )
+    with pytest.raises(
+        InputError, match=r'^console: \[ripple_filter\] method = "a": expected "osc'
+    ):
+        build_section("ripple_filter", {"method": "a"}, "console")
+    with pytest.raises(InputError, match=r'^console: \[ripple_filter\] lacks the key "method"'):
+        build_section("ripple_filter", {}, "console")
+    with pytest.raises(InputError, match=r"^console: \[ripple_filter\] orders = \[\]: expected a"):
+        build_section("ripple_filter", {"method": "ripple", "orders": []}, "console")
     with pytest.raises(InputError, match=r'\[gears\] is not a section .*did you mean "gear"'):
         build_section("gears", {}, "command line")
     with pytest.raises(InputError, match=r'\[joint\] name = "": expected a text that is not empty'):

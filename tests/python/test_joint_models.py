@@ -19,6 +19,7 @@ from strainwave.joint import (
     Joint,
     Misalignment,
     MisalignmentTerm,
+    OscillatorFilter,
     RippleFilter,
     Signals,
     Temperature,
@@ -39,8 +40,9 @@ def test_sections_are_those_of_the_signals_way() -> None:
         "misalignment",
         "temperature",
     )
-    assert SECTION_MODELS["gear"] is Gear
-    assert SECTION_MODELS["temperature"] is Temperature
+    assert SECTION_MODELS["gear"] == (Gear,)
+    assert SECTION_MODELS["ripple_filter"] == (OscillatorFilter, RippleFilter)
+    assert SECTION_MODELS["temperature"] == (Temperature,)
 
 
 def test_factor_m_is_the_relative_turn_of_wave_generator_and_flexspline() -> None:
@@ -195,23 +197,36 @@ def test_misalignment_terms_differ() -> None:
 def test_orders() -> None:
     assert order_value(2, None) == 2.0
     assert order_value("1/100", None) == Fraction(1, 100)
-    assert order_value("2/R", 120.5) == Fraction(4, 241)
-    with pytest.raises(ValueError, match="needs the ratio of the gear"):
-        order_value("1/R", None)
-    for wrong in ("R", "0/1", "1/0", "1.5/3", "1/R ", -2, 0, True, math.inf, math.nan):
+    assert order_value("2/R", gear(120.5)) == Fraction(4, 241)
+    # Fixed circular spline: m = (R + 1) / R, exactly.
+    assert order_value("2m", gear(120.5)) == 2 * Fraction(243, 241)
+    fixed_flexspline = Gear(configuration="fixed_flexspline", ratio=51.0, rated_torque_Nm=100.0)
+    assert order_value("4m", fixed_flexspline) == 4
+    identified = fixed_flexspline.model_copy(update={"identified_factor_m": 1.25})
+    assert order_value("2m", identified) == Fraction(5, 2)
+    for given_by_the_gear in ("1/R", "2m"):
+        with pytest.raises(ValueError, match="needs the gear"):
+            order_value(given_by_the_gear, None)
+    wrong_ones = ("R", "m", "0m", "2.0m", "2 m", "-2m", "0/1", "1/0", "1.5/3", "1/R ", -2, 0)
+    for wrong in (*wrong_ones, True, math.inf, math.nan):
         with pytest.raises(ValueError, match="expected a number of cycles per motor turn above 0"):
-            order_value(wrong, 100.0)
+            order_value(wrong, gear())
+
+
+@pytest.mark.parametrize("ratio", [1.0, 50.0, 100.3, 1e6])
+def test_the_exact_factor_m_is_the_factor_m(ratio: float) -> None:
+    assert float(gear(ratio).exact_factor_m) == pytest.approx(gear(ratio).factor_m, rel=1e-15)
 
 
 def test_an_order_is_there_once() -> None:
     with pytest.raises(ValidationError, match="the order 2/50 twice"):
-        RippleFilter.model_validate({**OSCILLATOR, "orders": ("1/25", 2.0, "2/50")})
-    ripple_filter = RippleFilter.model_validate(
+        OscillatorFilter.model_validate({**OSCILLATOR, "orders": ("1/25", 2.0, "2/50")})
+    ripple_filter = OscillatorFilter.model_validate(
         {**OSCILLATOR, "orders": ("1/100", "1/R"), "provenance": PROVENANCE}
     )
     identity = Identity(name="elbow")
     assert Joint(joint=identity, gear=gear(101.0), ripple_filter=ripple_filter).gear == gear(101.0)
-    with pytest.raises(ValidationError, match="the order 1/R twice in orders, for the ratio 100"):
+    with pytest.raises(ValidationError, match="the order 1/R twice in orders, for the ratio 100 "):
         Joint(joint=identity, gear=gear(100.0), ripple_filter=ripple_filter)
 
 

@@ -18,13 +18,14 @@ from strainwave.joint import (
     canonical_hash,
     parse_joint,
 )
-from strainwave.joint.fields import kind_of, model_of, unit_of
+from strainwave.joint.fields import kind_of, models_of, unit_of
 from strainwave.joint.reference import field_tables
 
 ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs/reference/joint-file.md").read_text(encoding="utf-8")
 
 SUFFIX_UNITS = {
+    "_Nm_per_sqrt_s": "Nm/sqrt(s)",
     "_rad_s": "rad/s",
     "_Nm_per_V": "Nm/V",
     "_V_per_K": "V/K",
@@ -43,6 +44,10 @@ SUFFIX_UNITS = {
 UNITS_WITHOUT_SUFFIX = {
     "converter_bits": "bit",
     "orders": "cycles per motor turn",
+    "load_orders": "cycles per motor turn",
+    "speed_orders": "cycles per motor turn",
+    "direction_orders": "cycles per motor turn",
+    "kept_orders": "cycles per motor turn",
     "identified_factor_m": "1",
 }
 
@@ -50,8 +55,7 @@ UNITS_WITHOUT_SUFFIX = {
 def models(model: type[BaseModel] = Joint) -> Iterator[type[BaseModel]]:
     yield model
     for field in model.model_fields.values():
-        inner = model_of(field)
-        if inner is not None:
+        for inner in models_of(field):
             yield from models(inner)
 
 
@@ -95,6 +99,18 @@ def test_the_tables_have_every_key_with_its_description() -> None:
         in_a_table = not model.endswith("Column") and model != "Joint" and name != "provenance"
         assert not in_a_table or field.description in tables
     assert len(FIELDS) > 90
+
+
+def test_a_section_of_two_methods_has_a_table_for_each() -> None:
+    tables = field_tables()
+    assert '### `[ripple_filter]` with `method = "oscillator"`\n' in tables
+    assert '### `[ripple_filter]` with `method = "ripple"`\n' in tables
+
+
+def test_the_ripple_filters_example_is_that_of_a_joint_file() -> None:
+    match = re.search(r"```toml\n(\[ripple_filter\]\nmethod = \"ripple\"\n.*?)```", PAGE, re.DOTALL)
+    assert match is not None
+    assert match[1] in (ROOT / "tests/data/joints/shoulder.toml").read_text(encoding="utf-8")
 
 
 def test_the_page_names_the_present_version() -> None:

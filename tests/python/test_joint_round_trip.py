@@ -20,6 +20,7 @@ from strainwave.joint import (
     Joint,
     Misalignment,
     MisalignmentTerm,
+    OscillatorFilter,
     Provenance,
     RippleFilter,
     Rosette,
@@ -145,6 +146,57 @@ def gauge_sections(draw: st.DrawFn) -> dict[str, Any]:
     return {"gauges": draw(gauges), "gains": draw(gains), "signals": draw(signals)}
 
 
+OSCILLATOR_FILTER = built(
+    OscillatorFilter,
+    method=st.just("oscillator"),
+    orders=st.sampled_from([(2.0,), (2.0, 4.0, "1/7"), (0.1, "3/1000000"), ("13m", "17/R")]),
+    process_noise_variances_Nm2=st.tuples(POSITIVE),
+    measurement_noise_variance_Nm2=POSITIVE,
+    initial_variance_Nm2=POSITIVE,
+    sample_period_s=st.floats(1e-6, 1.0),
+)
+
+
+@st.composite
+def ripple_filters(draw: st.DrawFn) -> RippleFilter:
+    """Draw a section of method ripple, with or without what was learned."""
+    # A gear's factor m is at most 2 here, and n/R and nm are different from all others.
+    orders = draw(
+        st.lists(st.sampled_from([300.25, 301.5, "997/3", "29m"]), min_size=1, unique=True)
+    )
+    settings_Nm = st.floats(1e-9, 1e9)
+    some = tuples(st.sampled_from(orders), 0, 4).map(lambda subset: tuple(dict.fromkeys(subset)))
+    subsets = {
+        f"{kind}_orders": draw(maybe(some)) for kind in ("load", "speed", "direction", "kept")
+    }
+    pairs = len(orders) + sum(
+        len(subset or ()) for key, subset in subsets.items() if key != "kept_orders"
+    )
+    learned: dict[str, Any] = {}
+    if draw(st.booleans()):
+        learned = {
+            "learned_coefficients_Nm": draw(tuples(st.floats(-1e9, 1e9), 2 * pairs, 2 * pairs)),
+            "learned_standard_deviations_Nm": draw(
+                tuples(st.floats(0.0, 1e9), 2 * pairs, 2 * pairs)
+            ),
+            "learned_innovation_scale_Nm": draw(maybe(st.floats(0.0, 1e9))),
+        }
+    return draw(
+        built(
+            RippleFilter,
+            method=st.just("ripple"),
+            orders=st.just(tuple(orders)),
+            memory_turns=st.floats(0.1, 1e6),
+            torque_noise_Nm=settings_Nm,
+            torque_walk_Nm_per_sqrt_s=settings_Nm,
+            initial_amplitude_Nm=maybe(settings_Nm),
+            reference_speed_rad_s=maybe(st.floats(1e-3, 1e6)),
+            minimum_speed_rad_s=maybe(st.floats(0.0, 100.0)),
+            **{key: st.just(value) for key, value in (subsets | learned).items()},
+        )
+    )
+
+
 OTHERS = st.fixed_dictionaries(
     {
         "gear": GEAR,
@@ -156,15 +208,7 @@ OTHERS = st.fixed_dictionaries(
             consistency=maybe(POSITIVE),
             experiment_count=maybe(st.integers(1, 1000)),
         ),
-        "ripple_filter": built(
-            RippleFilter,
-            method=st.just("oscillator"),
-            orders=st.sampled_from([(2.0,), (2.0, 4.0, "1/7"), (0.1, "3/1000000")]),
-            process_noise_variances_Nm2=st.tuples(POSITIVE),
-            measurement_noise_variance_Nm2=POSITIVE,
-            initial_variance_Nm2=POSITIVE,
-            sample_period_s=st.floats(1e-6, 1.0),
-        ),
+        "ripple_filter": OSCILLATOR_FILTER | ripple_filters(),
         "misalignment": built(
             Misalignment,
             zero_of_output_angle_rad=maybe(FINITE),
@@ -209,7 +253,7 @@ def test_any_joint_survives_writing_and_reading(
 ) -> None:
     joint_file = new_joint(name, serial=serial, notes=notes)
     expected: dict[str, Any] = {"joint": joint_file.joint.identity}
-    # The gear first: linearisation needs it.
+    # The gear first: linearisation and some orders need it.
     for section in ["gear", *data.draw(st.lists(st.sampled_from(order), unique=True))]:
         provenance = data.draw(PROVENANCE)
         joint_file.set_section(section, sections[section], provenance)

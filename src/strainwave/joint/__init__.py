@@ -15,8 +15,10 @@ from strainwave.joint.gear import Gear
 from strainwave.joint.migrations import SCHEMA_VERSION
 from strainwave.joint.misalignment import Misalignment, MisalignmentTerm
 from strainwave.joint.model import SECTION_MODELS, SECTION_NAMES, Identity, Joint
+from strainwave.joint.orders import order_value
+from strainwave.joint.oscillator_filter import OscillatorFilter
 from strainwave.joint.provenance import Provenance, Section
-from strainwave.joint.ripple_filter import RippleFilter, order_value
+from strainwave.joint.ripple_filter import RippleFilter
 from strainwave.joint.signals import (
     AngleColumn,
     Column,
@@ -47,6 +49,7 @@ __all__ = [
     "JointFile",
     "Misalignment",
     "MisalignmentTerm",
+    "OscillatorFilter",
     "Provenance",
     "RippleFilter",
     "Rosette",

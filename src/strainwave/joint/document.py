@@ -18,8 +18,8 @@ from strainwave.joint.provenance import Provenance, Section
 from strainwave.joint.toml_text import parse_values
 
 
-def section_model(name: str, source: str) -> type[Section]:
-    """Return the model of a section, by its name.
+def section_models(name: str, source: str) -> tuple[type[Section], ...]:
+    """Return the models of a section, by its name: one, or one for each method.
 
     Raises
     ------
@@ -107,7 +107,8 @@ class JointFile:
         name : str
             Name of the section, one of `SECTION_NAMES`.
         model : Section
-            Its values: a `Gear` for ``"gear"`` and so on. A provenance it has is replaced.
+            Its values: a `Gear` for ``"gear"`` and so on; for ``"ripple_filter"`` an
+            `OscillatorFilter` or a `RippleFilter`. A provenance it has is replaced.
         provenance : Provenance
             Where the values come from.
 
@@ -116,13 +117,12 @@ class JointFile:
         InputError
             If there is no section of that name, or the joint would contradict itself.
         TypeError
-            If `model` is not of the section's model.
+            If `model` is not of one of the section's models.
         """
-        expected = section_model(name, self._source)
+        expected = section_models(name, self._source)
         if not isinstance(model, expected):
-            raise TypeError(
-                f"section [{name}]: expected a {expected.__name__}, got {type(model).__name__}"
-            )
+            names = " or ".join(each.__name__ for each in expected)
+            raise TypeError(f"section [{name}]: expected {names}, got {type(model).__name__}")
         section = model.model_copy(update={"provenance": provenance})
         values = _plain_values(section)
         self._change(name, values)
@@ -140,7 +140,7 @@ class JointFile:
         InputError
             If there is no section of that name, or another section needs it.
         """
-        section_model(name, self._source)
+        section_models(name, self._source)
         self._change(name, None)
 
     def _change(self, name: str, values: dict[str, Any] | None) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from typing import Any, Literal, get_args, get_origin
 
 import annotated_types
@@ -36,11 +37,23 @@ def unit_of(field: FieldInfo) -> str | None:
     return None
 
 
-def model_of(field: FieldInfo) -> type[BaseModel] | None:
-    """Return the model of a field that holds a table or a list of tables, or None."""
-    for part in _parts(field.annotation):
-        if isinstance(part, type) and issubclass(part, BaseModel):
-            return part
+def models_of(field: FieldInfo) -> tuple[type[BaseModel], ...]:
+    """Return the models of a field that holds a table or a list of tables, or nothing.
+
+    There are several where one key of the table, its discriminator, tells which one it is.
+    """
+    return tuple(
+        part
+        for part in _parts(field.annotation)
+        if isinstance(part, type) and issubclass(part, BaseModel)
+    )
+
+
+def discriminator_of(field: FieldInfo) -> str | None:
+    """Return the key that tells which of several models a table is of, None where there is one."""
+    for part in _everything(field):
+        if isinstance(part, FieldInfo) and isinstance(part.discriminator, str):
+            return part.discriminator
     return None
 
 
@@ -50,9 +63,12 @@ def is_list(field: FieldInfo) -> bool:
 
 
 def range_of(field: FieldInfo) -> str:
-    """Return the range of the numbers of a field in words, ``""`` where any number goes."""
+    """Return the range of the numbers of a field, or of its list, in words; ``""`` for any."""
     low, high = "", ""
-    for part in field.metadata:
+    inner = [
+        item for part in _everything(field) if isinstance(part, FieldInfo) for item in part.metadata
+    ]
+    for part in (*field.metadata, *inner):
         if isinstance(part, annotated_types.Gt):
             low = f"greater than {part.gt:.10g}"
         elif isinstance(part, annotated_types.Ge):
@@ -84,8 +100,7 @@ def choices_of(field: FieldInfo) -> tuple[Any, ...]:
 
 def kind_of(field: FieldInfo) -> str:
     """Return what kind of value a field holds, in words."""
-    model = model_of(field)
-    if model is not None:
+    if models_of(field):
         return "list of tables" if is_list(field) else "table"
     choices = choices_of(field)
     if choices:
@@ -111,9 +126,32 @@ def key_of(name: str, field: FieldInfo) -> str:
     return field.alias or name
 
 
-def field_at(
-    model: type[BaseModel], location: Sequence[str | int]
-) -> tuple[type[BaseModel] | None, FieldInfo | None]:
+@dataclass(frozen=True)
+class Place:
+    """A place in the file, found by a location as the models give it.
+
+    Attributes
+    ----------
+    location : tuple of str or int
+        Keys, and positions in lists: the location without the tags of the models in between.
+    models : tuple of types
+        The models that the table there may have; empty where it is no table.
+    field : FieldInfo or None
+        The field there, None where it is not known.
+    """
+
+    location: tuple[str | int, ...]
+    models: tuple[type[BaseModel], ...]
+    field: FieldInfo | None
+
+
+def _tagged(
+    models: Sequence[type[BaseModel]], key: str, tag: str | int
+) -> tuple[type[BaseModel], ...]:
+    return tuple(model for model in models if tag in choices_of(model.model_fields[key]))
+
+
+def place_at(model: type[BaseModel], location: Sequence[str | int]) -> Place:
     """Follow a location through the models.
 
     Parameters
@@ -121,25 +159,30 @@ def field_at(
     model : type
         The model the location starts from.
     location : sequence of str or int
-        Keys, and positions in lists.
+        Keys, and positions in lists; after a table of one of several models, which one it is of.
 
     Returns
     -------
-    model : type or None
-        The model of the table at the location, None where it is no table.
-    field : FieldInfo or None
-        The field at the location, None where it is not known.
+    Place
+        What is there.
     """
-    current: type[BaseModel] | None = model
+    models: tuple[type[BaseModel], ...] = (model,)
     field: FieldInfo | None = None
+    passed: list[str | int] = []
     for step in location:
+        if len(models) > 1 and field is not None:
+            key = discriminator_of(field)
+            chosen = () if key is None else _tagged(models, key, step)
+            if chosen:
+                models = chosen
+                continue
+        passed.append(step)
         if isinstance(step, int):
             continue
-        if current is None:
-            return None, field
-        known = {key_of(name, item): item for name, item in current.model_fields.items()}
-        if step not in known:
-            return None, None
-        field = known[step]
-        current = model_of(field)
-    return current, field
+        known = {
+            key_of(name, item): item for each in models for name, item in each.model_fields.items()
+        }
+        if models:
+            field = known.get(step)
+        models = () if field is None else models_of(field)
+    return Place(tuple(passed), models, field)

@@ -8,12 +8,12 @@ from pathlib import Path
 from typing import Any
 
 import tomlkit
-from pydantic import ValidationError
+from pydantic import TypeAdapter, ValidationError
 
 from strainwave.atomic import write_atomically
 from strainwave.errors import InputError
 from strainwave.joint import editing
-from strainwave.joint.document import JointFile, joint_of_text, section_model
+from strainwave.joint.document import JointFile, joint_of_text, section_models
 from strainwave.joint.migrations import (
     MIGRATIONS,
     SCHEMA_VERSION,
@@ -22,7 +22,7 @@ from strainwave.joint.migrations import (
     migrate,
     schema_version,
 )
-from strainwave.joint.model import Identity
+from strainwave.joint.model import Identity, Joint
 from strainwave.joint.problems import input_error
 from strainwave.joint.provenance import Section
 from strainwave.joint.toml_text import decode, parse_document, read_bytes
@@ -146,7 +146,7 @@ def new_joint(name: str, *, serial: str | None = None, notes: str | None = None)
     try:
         identity = Identity(name=name, serial=serial, notes=notes)
     except ValidationError as error:
-        raise input_error(error, "new joint", Identity, ("joint",)) from error
+        raise input_error(error, "new joint", Joint, ("joint",)) from error
     document = tomlkit.document()
     document.append(VERSION_KEY, tomlkit.item(SCHEMA_VERSION))
     document.append(tomlkit.key("joint"), editing.new_table(identity.model_dump(exclude_none=True)))
@@ -168,15 +168,17 @@ def build_section(name: str, values: Mapping[str, Any], source: str) -> Section:
     Returns
     -------
     Section
-        A `Gear` for ``"gear"`` and so on.
+        A `Gear` for ``"gear"`` and so on; for ``"ripple_filter"`` that of its method.
 
     Raises
     ------
     InputError
         If there is no such section, or a value is missing, unknown or wrong.
     """
-    model = section_model(name, source)
+    section_models(name, source)
+    annotation: Any = Joint.model_fields[name].annotation
     try:
-        return model.model_validate(dict(values))
+        section: Section = TypeAdapter(annotation).validate_python(dict(values))
     except ValidationError as error:
-        raise input_error(error, source, model, (name,)) from error
+        raise input_error(error, source, Joint, (name,)) from error
+    return section

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from fractions import Fraction
 from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Field, model_validator
@@ -99,3 +100,11 @@ class Gear(Section):
         if self.identified_factor_m is not None:
             return self.identified_factor_m
         return 1.0 if self.configuration == "fixed_flexspline" else (self.ratio + 1.0) / self.ratio
+
+    @property
+    def exact_factor_m(self) -> Fraction:
+        """The factor m of `factor_m` without rounding, for the ratio as it is given."""
+        if self.identified_factor_m is not None:
+            return Fraction(self.identified_factor_m)
+        fixed_flexspline = self.configuration == "fixed_flexspline"
+        return Fraction(1) if fixed_flexspline else 1 + 1 / Fraction(self.ratio)

@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
-from typing import Final, get_args
+from typing import Annotated, Final
 
 from pydantic import Field, ValidationInfo, field_validator, model_validator
 
 from strainwave.joint.base import FilePart, Line, Lines
+from strainwave.joint.fields import models_of
 from strainwave.joint.gains import Gains
 from strainwave.joint.gauges import Gauges
 from strainwave.joint.gear import Gear
 from strainwave.joint.misalignment import Misalignment
+from strainwave.joint.orders import needs_gear, repeated_order
+from strainwave.joint.oscillator_filter import OscillatorFilter
 from strainwave.joint.provenance import Section
-from strainwave.joint.ripple_filter import RippleFilter, repeated_order
+from strainwave.joint.ripple_filter import RippleFilter
 from strainwave.joint.signals import Signals
 from strainwave.joint.temperature import Temperature
 from strainwave.joint.torque_calibration import TorqueCalibration
@@ -42,9 +45,9 @@ class Joint(FilePart):
     torque_calibration: TorqueCalibration | None = Field(
         default=None, description="From sensor voltage to torque"
     )
-    ripple_filter: RippleFilter | None = Field(
-        default=None, description="What is removed from the torque, and how"
-    )
+    ripple_filter: (
+        Annotated[OscillatorFilter | RippleFilter, Field(discriminator="method")] | None
+    ) = Field(default=None, description="What is removed from the torque, and how")
     misalignment: Misalignment | None = Field(
         default=None, description="Torque that repeats with the output's angle"
     )
@@ -110,38 +113,53 @@ class Joint(FilePart):
                 "[torque_calibration] has a linearisation, which is relative to the rated torque, "
                 "but there is no section [gear]; add [gear] with rated_torque_Nm"
             )
+        loaded = isinstance(self.ripple_filter, RippleFilter) and self.ripple_filter.load_orders
+        if loaded and self.gear is None:
+            raise ValueError(
+                "[ripple_filter] has load_orders, whose load is relative to the rated torque, but "
+                "there is no section [gear]; add [gear] with rated_torque_Nm"
+            )
+        return self
+
+    @model_validator(mode="after")
+    def _orders_suit_the_gear(self) -> Joint:
         if self.ripple_filter is None:
             return self
         orders = self.ripple_filter.orders
         if self.gear is None:
             for order in orders:
-                if isinstance(order, str) and order.endswith("R"):
+                if needs_gear(order):
+                    symbol, meaning = ("R", "ratio") if "R" in str(order) else ("m", "factor m")
                     raise ValueError(
-                        f'[ripple_filter] has the order "{order}", where R is the ratio of the '
-                        "gear, but there is no section [gear]; add [gear], or write the order as "
-                        "a number"
+                        f'[ripple_filter] has the order "{order}", where {symbol} is the {meaning} '
+                        "of the gear, but there is no section [gear]; add [gear], or write the "
+                        "order as a number"
                     )
             return self
-        repeated = repeated_order(orders, self.gear.ratio)
+        repeated = repeated_order(orders, self.gear)
         if repeated is not None:
             raise ValueError(
                 f"[ripple_filter] has the order {repeated} twice in orders, for the ratio "
-                f"{self.gear.ratio:g} of [gear]; remove one of them"
+                f"{self.gear.ratio:g} and the factor m {self.gear.factor_m:g} of [gear]; remove "
+                "one of them"
             )
         return self
 
 
-def _section_models() -> dict[str, type[Section]]:
-    models: dict[str, type[Section]] = {}
+def _section_models() -> dict[str, tuple[type[Section], ...]]:
+    models: dict[str, tuple[type[Section], ...]] = {}
     for name, field in Joint.model_fields.items():
-        for choice in get_args(field.annotation):
-            if isinstance(choice, type) and issubclass(choice, Section):
-                models[name] = choice
+        sections = tuple(model for model in models_of(field) if issubclass(model, Section))
+        if sections:
+            models[name] = sections
     return models
 
 
-SECTION_MODELS: Final[dict[str, type[Section]]] = _section_models()
-"""The model of each section that commands fill, by its name in the file."""
+SECTION_MODELS: Final[dict[str, tuple[type[Section], ...]]] = _section_models()
+"""The models of each section that commands fill, by its name in the file.
+
+It is one model, but for ``ripple_filter``, which has one for each ``method``.
+"""
 
 SECTION_NAMES: Final[tuple[str, ...]] = tuple(SECTION_MODELS)
 """Names of the sections that commands fill, in the order of the file."""

@@ -8,11 +8,22 @@ import re
 from collections.abc import Mapping, Sequence
 
 from pydantic import BaseModel, ValidationError
+from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails
 
 from strainwave.errors import InputError
-from strainwave.joint.fields import choices_of, field_at, key_of, kind_of, range_of, unit_of
+from strainwave.joint.fields import (
+    Place,
+    choices_of,
+    discriminator_of,
+    key_of,
+    kind_of,
+    place_at,
+    range_of,
+    unit_of,
+)
 
+Location = Sequence[str | int]
 _WRONG_KIND = {
     "float_type": "a number",
     "int_type": "a whole number",
@@ -29,6 +40,7 @@ _WRONG_KIND = {
     "string_pattern_mismatch": "64 hexadecimal digits",
 }
 _RANGE = ("greater_than", "greater_than_equal", "less_than", "less_than_equal")
+_WRONG_CHOICE = ("union_tag_not_found", "union_tag_invalid")
 _LONGEST_SHOWN = 60
 _CONSEQUENCE = "default_factory_not_called"
 """Reported for a default that depends on a field which is itself in error."""
@@ -53,7 +65,7 @@ def shown(value: object) -> str:
     return text if len(text) <= _LONGEST_SHOWN else text[: _LONGEST_SHOWN - 3] + "..."
 
 
-def place(location: Sequence[str | int], *, table: bool = False) -> str:
+def place(location: Location, *, table: bool = False) -> str:
     """Return a location in words: ``[gauges.rosettes] entry 2, radius_m``.
 
     Parameters
@@ -78,17 +90,27 @@ def place(location: Sequence[str | int], *, table: bool = False) -> str:
     return f"[{path}] {', '.join(rest)}".rstrip()
 
 
-def _unknown_key(error: ErrorDetails, model: type[BaseModel], prefix: Sequence[str]) -> str:
-    *table_location, key = error["loc"]
-    table, _ = field_at(model, table_location)
-    fields = {} if table is None else table.model_fields
-    known = {name.lower(): name for name in (key_of(*item) for item in fields.items())}
+def _missing(at: Place) -> str:
+    *table_location, key = at.location
+    if not table_location:
+        return f"the section {place(at.location)} is missing{_about(at.field)}; add it"
+    return f'{place(table_location, table=True)} lacks the key "{key}"{_about(at.field)}; add it'
+
+
+def _unknown_key(error: ErrorDetails, model: type[BaseModel], location: Location) -> str:
+    *table_location, key = location
+    table = place_at(model, table_location)
+    known = {
+        key_of(*item).lower(): key_of(*item)
+        for each in table.models
+        for item in each.model_fields.items()
+    }
     close = difflib.get_close_matches(str(key).lower(), list(known), n=1)
     if close:
         advice = f'(did you mean "{known[close[0]]}"?); rename or remove it'
     else:
         advice = f"(known are {', '.join(known.values())}); remove it"
-    table_place = place((*prefix, *table_location), table=True)
+    table_place = place(table.location, table=True)
     if table_place:
         return f"{table_place} has the unknown key {shown(key)} {advice}"
     if isinstance(error["input"], Mapping):
@@ -96,8 +118,20 @@ def _unknown_key(error: ErrorDetails, model: type[BaseModel], prefix: Sequence[s
     return f"the key {shown(key)} outside the sections is unknown {advice}"
 
 
-def _expected(error: ErrorDetails, model: type[BaseModel]) -> str:
-    _, field = field_at(model, error["loc"])
+def _wrong_choice(error: ErrorDetails, at: Place) -> str:
+    """Say that a table does not tell, or tells wrongly, which of several models it is of."""
+    key = None if at.field is None else discriminator_of(at.field)
+    assert key is not None
+    fields = [model.model_fields[key] for model in at.models]
+    known = " or ".join(shown(choice) for field in fields for choice in choices_of(field))
+    table_place, about = place(at.location, table=True), _about(fields[0])
+    if error["type"] == "union_tag_not_found":
+        return f'{table_place} lacks the key "{key}"{about}; add it as {known}'
+    value = shown(error["input"][key])
+    return f"{table_place} {key} = {value}: expected {known}{about}; correct this value"
+
+
+def _expected(error: ErrorDetails, field: FieldInfo | None) -> str:
     kind = error["type"]
     context = error.get("ctx", {})
     if kind.startswith(("datetime", "timezone")):
@@ -122,9 +156,8 @@ def _expected(error: ErrorDetails, model: type[BaseModel]) -> str:
     return text
 
 
-def _about(error: ErrorDetails, model: type[BaseModel]) -> str:
+def _about(field: FieldInfo | None) -> str:
     """Return the first clause of the field's description, in parentheses."""
-    _, field = field_at(model, error["loc"])
     if field is None or not field.description:
         return ""
     clause = re.split(r"[;:(]", field.description)[0].strip().replace("`", "")
@@ -140,9 +173,9 @@ def sentence(error: ErrorDetails, model: type[BaseModel], prefix: Sequence[str] 
     error : ErrorDetails
         One of ``ValidationError.errors()``.
     model : type
-        The model that was validated.
+        The model of the file as a whole.
     prefix : sequence of str
-        Location of that model in the file.
+        Location in the file of what was validated.
 
     Returns
     -------
@@ -150,24 +183,24 @@ def sentence(error: ErrorDetails, model: type[BaseModel], prefix: Sequence[str] 
         Place, value, what was expected, what to do; without the file and without a full stop.
     """
     location = (*prefix, *error["loc"])
-    where = place(location)
+    at = place_at(model, location)
+    where = place(at.location)
     kind = error["type"]
     if kind == "missing":
-        if len(location) == 1:
-            return f"the section {where} is missing{_about(error, model)}; add it"
-        table_place = place(location[:-1], table=True)
-        return f'{table_place} lacks the key "{location[-1]}"{_about(error, model)}; add it'
+        return _missing(at)
     if kind == "extra_forbidden":
-        return _unknown_key(error, model, prefix)
+        return _unknown_key(error, model, location)
+    if kind in _WRONG_CHOICE:
+        return _wrong_choice(error, at)
     if kind == "value_error":
         message = str(error.get("ctx", {}).get("error", error["msg"]))
         if isinstance(error["input"], Mapping | BaseModel):
-            return f"{place(location, table=True)} {message}".strip()
+            return f"{place(at.location, table=True)} {message}".strip()
         advice = "" if ";" in message else "; correct this value"
         return f"{where} = {shown(error['input'])}: {message}{advice}"
     return (
-        f"{where} = {shown(error['input'])}: expected {_expected(error, model)}"
-        f"{_about(error, model)}; correct this value"
+        f"{where} = {shown(error['input'])}: expected {_expected(error, at.field)}"
+        f"{_about(at.field)}; correct this value"
     )
 
 
@@ -183,9 +216,9 @@ def input_error(
     source : str
         File (or other place) the values come from.
     model : type
-        The model that was validated.
+        The model of the file as a whole.
     prefix : sequence of str
-        Location of that model in the file.
+        Location in the file of what was validated.
 
     Returns
     -------

@@ -8,8 +8,17 @@ from typing import get_args
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
-from strainwave.joint.fields import key_of, kind_of, length_of, model_of, range_of, unit_of
-from strainwave.joint.model import SECTION_MODELS, Identity
+from strainwave.joint.fields import (
+    choices_of,
+    discriminator_of,
+    key_of,
+    kind_of,
+    length_of,
+    models_of,
+    range_of,
+    unit_of,
+)
+from strainwave.joint.model import SECTION_MODELS, Identity, Joint
 from strainwave.joint.provenance import Provenance
 from strainwave.joint.signals import Column
 from strainwave.joint.units import BASE_UNITS, Quantity, allowed_units
@@ -55,25 +64,38 @@ def _table(title: str, model: type[BaseModel]) -> Iterator[str]:
 
 def _lists(name: str, model: type[BaseModel]) -> Iterator[tuple[str, type[BaseModel]]]:
     for key, field in model.model_fields.items():
-        inner = model_of(field)
-        if inner is None or issubclass(inner, Column | Provenance):
-            continue
-        yield f"`[[{name}.{key}]]`", inner
+        for inner in models_of(field):
+            if not issubclass(inner, Column | Provenance):
+                yield f"`[[{name}.{key}]]`", inner
+
+
+def _title(name: str, model: type[BaseModel]) -> str:
+    """Return the heading of a section, with what tells its models apart where it has several."""
+    key = discriminator_of(Joint.model_fields[name])
+    if key is None:
+        return f"`[{name}]`"
+    (choice,) = choices_of(model.model_fields[key])
+    return f'`[{name}]` with `{key} = "{choice}"`'
 
 
 def field_tables() -> str:
     """Return the tables of all sections in Markdown: key, value, unit, default, meaning."""
     lines = [*_table("`[joint]`", Identity)]
-    for name, model in SECTION_MODELS.items():
-        lines += _table(f"`[{name}]`", model)
-        if name == "signals":
-            lines += _table("A column, such as `signals.torque`", Column)
-            lines += ["| quantity | units of a column | computed in |", "|---|---|---|"]
-            for quantity in get_args(Quantity):
-                units = ", ".join(allowed_units(quantity))
-                lines.append(f"| {quantity} | {units} | {BASE_UNITS[quantity]} |")
-            lines.append("")
-        for title, inner in _lists(name, model):
-            lines += _table(title, inner)
+    for name, models in SECTION_MODELS.items():
+        for model in models:
+            lines += _table(_title(name, model), model)
+            if name == "signals":
+                lines += _columns()
+            for title, inner in _lists(name, model):
+                lines += _table(title, inner)
     lines += _table("`[SECTION.provenance]`", Provenance)
     return "\n".join(lines).rstrip() + "\n"
+
+
+def _columns() -> Iterator[str]:
+    yield from _table("A column, such as `signals.torque`", Column)
+    yield from ("| quantity | units of a column | computed in |", "|---|---|---|")
+    for quantity in get_args(Quantity):
+        units = ", ".join(allowed_units(quantity))
+        yield f"| {quantity} | {units} | {BASE_UNITS[quantity]} |"
+    yield ""

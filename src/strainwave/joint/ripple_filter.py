@@ -1,118 +1,80 @@
-"""The section ``[ripple_filter]``: what is removed from the torque, and how."""
+"""The section ``[ripple_filter]`` of method ``ripple``: strainwave's own filter."""
 
 from __future__ import annotations
 
-import math
-import re
-from fractions import Fraction
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
-from pydantic import BeforeValidator, Field, model_validator
+from pydantic import Field, model_validator
 
 from strainwave.joint.base import ListOf, Unit
+from strainwave.joint.orders import ORDERS_IN_WORDS, Order, check_orders_differ, order_text
 from strainwave.joint.provenance import Section
 
-_FRACTION = re.compile(r"([1-9][0-9]{0,8})/([1-9][0-9]{0,8}|R)")
+SUBSETS = ("load_orders", "speed_orders", "direction_orders", "kept_orders")
+"""Keys that name some of the orders again; all but the last bring a pair of coefficients each."""
 
-
-def _check_order(value: Any) -> Any:
-    """Take a number for a float, and leave a fraction as it is written."""
-    if isinstance(value, str) and _FRACTION.fullmatch(value):
-        return value
-    if isinstance(value, int | float) and not isinstance(value, bool) and 0 < value <= 1000:
-        return float(value)
-    raise ValueError(
-        'expected a number of cycles per motor turn above 0 and up to 1000, or a fraction such as "1/100" or '
-        '"1/R" (R: ratio of the gear)'
-    )
-
-
-Order = Annotated[float | str, BeforeValidator(_check_order), Unit("cycles per motor turn")]
-
-
-def order_value(order: float | str, ratio: float | None) -> float | Fraction:
-    """Return an order as cycles per motor turn.
-
-    Parameters
-    ----------
-    order : float or str
-        A number, a fraction such as ``"1/100"``, or ``"n/R"``: n cycles per output turn.
-    ratio : float or None
-        Motor turns per output turn; needed for ``"n/R"`` only.
-
-    Returns
-    -------
-    float or Fraction
-        Cycles per motor turn; exact for fractions.
-
-    Raises
-    ------
-    ValueError
-        If the order is not one, or is ``"n/R"`` and there is no ratio.
-    """
-    order = _check_order(order)
-    if isinstance(order, float):
-        return order
-    numerator, denominator = order.split("/")
-    if denominator != "R":
-        return Fraction(int(numerator), int(denominator))
-    if ratio is None:
-        raise ValueError(f'the order "{order}" needs the ratio of the gear')
-    return int(numerator) / Fraction(ratio)
-
-
-def repeated_order(orders: tuple[float | str, ...], ratio: float | None) -> float | str | None:
-    """Return the first order that equals an earlier one to rounding, or None.
-
-    Orders ``"n/R"`` are compared only where the ratio is known.
-    """
-    seen: list[float] = []
-    for order in orders:
-        if ratio is None and isinstance(order, str) and order.endswith("R"):
-            continue
-        value = float(order_value(order, ratio))
-        if any(math.isclose(value, other, rel_tol=1e-9) for other in seen):
-            return order
-        seen.append(value)
-    return None
+Coefficient = Annotated[float, Field(ge=-1e9, le=1e9), Unit("Nm")]
+Deviation = Annotated[float, Field(ge=0.0, le=1e9), Unit("Nm")]
 
 
 class RippleFilter(Section):
-    """The oscillator filter: a Kalman filter whose oscillators turn with the motor.
+    """The ripple filter: a Kalman filter on true torque and on coefficients of the motor's angle.
 
-    Taghirad and Belanger 1999, eq. (9)-(14). Each order has two states, both in Nm.
+    Each order has a cosine and a sine of order times motor angle, and further such pairs where its
+    ripple grows with load or speed or differs with the direction of motion. The coefficients in
+    `learned_coefficients_Nm` count from the zero of the motor angle with which they were learned.
     """
 
-    method: Literal["oscillator"] = Field(description="The filter these values belong to")
+    method: Literal["ripple"] = Field(description="The filter these values belong to")
     orders: ListOf[Order] = Field(
         min_length=1,
-        description='What is removed: numbers, fractions such as "1/100", or "n/R" for n cycles '
-        "per output turn (R: ratio of the gear)",
+        description=f"What is learned, and removed unless it is in kept_orders: {ORDERS_IN_WORDS}",
     )
-    process_noise_variances_Nm2: ListOf[Annotated[float, Field(ge=0.0), Unit("Nm^2")]] = Field(
-        min_length=1,
-        description="Variance that each state of an order gains per sample (Q): one for all "
-        "orders, or one for each",
+    load_orders: ListOf[Order] = Field(
+        default=(),
+        description="Those of orders that also have a pair times the load, that is torque over "
+        "gear.rated_torque_Nm; written as in orders",
     )
-    measurement_noise_variance_Nm2: Annotated[float, Unit("Nm^2")] = Field(
-        gt=0.0, description="Variance of the measured less the expected torque (R)"
+    speed_orders: ListOf[Order] = Field(
+        default=(),
+        description="Those of orders that also have a pair times motor speed, as a magnitude, over "
+        "reference_speed_rad_s",
     )
-    initial_variance_Nm2: Annotated[float, Unit("Nm^2")] = Field(
-        gt=0.0, description="Variance of each state at the start (P(0))"
+    direction_orders: ListOf[Order] = Field(
+        default=(),
+        description="Those of orders that also have a pair times the direction of motion, 1 or -1",
     )
-    sample_period_s: Annotated[float, Unit("s")] = Field(
-        gt=0.0, le=1.0, description="Time between two samples"
+    kept_orders: ListOf[Order] = Field(
+        default=(),
+        description="Those of orders that are learned but left in the torque, because they are "
+        "real torque",
     )
-    rotation_source: Literal["speed", "angle"] = Field(
-        default="speed",
-        description="What turns the oscillators: speed times sample period, as published, or the "
-        "difference of motor angles",
+    memory_turns: Annotated[float, Unit("1")] = Field(
+        ge=0.1,
+        le=1e6,
+        description="Memory in motor turns: ripple that changes within fewer turns is not "
+        "followed, torque that repeats over more turns is taken for ripple",
     )
-    minimum_travel_rad: Annotated[float, Unit("rad")] | None = Field(
+    torque_noise_Nm: Annotated[float, Unit("Nm")] = Field(
+        ge=1e-9, le=1e9, description="Standard deviation of the noise of one sample"
+    )
+    torque_walk_Nm_per_sqrt_s: Annotated[float, Unit("Nm/sqrt(s)")] = Field(
+        ge=1e-9,
+        le=1e9,
+        description="How fast true torque wanders: its standard deviation after one second",
+    )
+    initial_amplitude_Nm: Annotated[float, Unit("Nm")] | None = Field(
         default=None,
-        ge=0.0,
-        le=1.0,
-        description="Motor angle without which nothing is learned; 0 is off, left out is the "
+        ge=1e-9,
+        le=1e9,
+        description="Standard deviation of each coefficient before anything is learned; left out "
+        "is the filter's own",
+    )
+    reference_speed_rad_s: Annotated[float, Unit("rad/s")] | None = Field(
+        default=None,
+        ge=1e-3,
+        le=1e6,
+        description="Motor speed at which the pairs of speed_orders count once; left out is the "
         "filter's own",
     )
     minimum_speed_rad_s: Annotated[float, Unit("rad/s")] | None = Field(
@@ -122,22 +84,65 @@ class RippleFilter(Section):
         description="Motor speed below which nothing is learned; 0 is off, left out is the "
         "filter's own",
     )
-    variance_limit_ratio: Annotated[float, Unit("1")] | None = Field(
+    learned_coefficients_Nm: ListOf[Coefficient] | None = Field(
+        default=None,
+        description="Coefficients to start with: cosine and sine of each pair, pairs in the order "
+        "of orders and, within one, constant, load, speed, direction",
+    )
+    learned_standard_deviations_Nm: ListOf[Deviation] | None = Field(
+        default=None,
+        description="Standard deviation of each of learned_coefficients_Nm, in the same order",
+    )
+    learned_innovation_scale_Nm: Annotated[float, Unit("Nm")] | None = Field(
         default=None,
         ge=0.0,
-        description="Largest variance as a multiple of the process noise; 0 is off, left out is "
-        "the filter's own",
+        le=1e9,
+        description="Size of the innovations when the coefficients were learned; left out is the "
+        "filter's own",
     )
 
+    @property
+    def coefficient_count(self) -> int:
+        """Number of coefficients: cosine and sine of every pair of every order."""
+        with_further_pairs = (self.load_orders, self.speed_orders, self.direction_orders)
+        return 2 * (len(self.orders) + sum(len(orders) for orders in with_further_pairs))
+
     @model_validator(mode="after")
-    def _orders_differ(self) -> RippleFilter:
-        repeated = repeated_order(self.orders, None)
-        if repeated is not None:
-            raise ValueError(f"has the order {repeated} twice in orders; remove one of them")
-        given = len(self.process_noise_variances_Nm2)
-        if given not in (1, len(self.orders)):
+    def _orders_agree(self) -> RippleFilter:
+        check_orders_differ(self.orders)
+        for key in SUBSETS:
+            subset: tuple[float | str, ...] = getattr(self, key)
+            for position, order in enumerate(subset):
+                if order not in self.orders:
+                    known = ", ".join(order_text(each) for each in self.orders)
+                    raise ValueError(
+                        f"has the order {order_text(order)} in {key}, but not in orders; expected "
+                        f"some of {known}, written as there, so add it to orders or remove it"
+                    )
+                if order in subset[:position]:
+                    raise ValueError(
+                        f"has the order {order_text(order)} twice in {key}; remove one of them"
+                    )
+        return self
+
+    @model_validator(mode="after")
+    def _what_was_learned_is_whole(self) -> RippleFilter:
+        lists = {
+            key: values
+            for key in ("learned_coefficients_Nm", "learned_standard_deviations_Nm")
+            if (values := getattr(self, key)) is not None
+        }
+        if len(lists) == 1 or (not lists and self.learned_innovation_scale_Nm is not None):
             raise ValueError(
-                f"has {given} process_noise_variances_Nm2 and {len(self.orders)} orders; expected "
-                "one variance for all orders, or one for each"
+                "gives only a part of what was learned; expected learned_coefficients_Nm and "
+                "learned_standard_deviations_Nm together, with or without "
+                "learned_innovation_scale_Nm, so add what is missing or remove them all"
             )
+        for key, values in lists.items():
+            if len(values) != self.coefficient_count:
+                raise ValueError(
+                    f"has {len(values)} {key}; expected {self.coefficient_count}, a cosine and a "
+                    "sine of each pair (one for every entry of orders, load_orders, speed_orders "
+                    "and direction_orders), so learn them again with these orders or remove them"
+                )
         return self

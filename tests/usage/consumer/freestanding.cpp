@@ -1,23 +1,32 @@
-// The core as firmware compiles it: no hosted library, exceptions or RTTI.  The whole chain,
-// and every part that it does not need, is instantiated for float and for double behind functions
-// with C linkage and data that only the caller knows, so that nothing can be computed away.
+// The core as firmware compiles it: no hosted library, exceptions or RTTI.  The whole chain with
+// either filter, and every part that it does not need, is instantiated for float and for double
+// behind functions with C linkage and data that only the caller knows, so that nothing can be
+// computed away.
 #include <cstddef>
 #include <cstdint>
 #include <type_traits>
 
 #include "strainwave/fluctuation.hpp"
 #include "strainwave/gear.hpp"
+#include "strainwave/learned_ripple.hpp"
+#include "strainwave/sample_clock.hpp"
 #include "strainwave/torque_sensor.hpp"
+#include "strainwave/tracking_notch.hpp"
 
 namespace {
 
 constexpr std::size_t max_gauges = 8;
 constexpr std::size_t max_orders = 3;
+constexpr std::size_t max_pairs = 8;
 
 template <class Real>
 using Config = strainwave::TorqueSensorConfig<Real, max_gauges, max_orders>;
 template <class Real>
 using State = strainwave::TorqueSensorState<Real, max_gauges, max_orders>;
+template <class Real>
+using RippleConfig = strainwave::RippleSensorConfig<Real, max_gauges, max_pairs>;
+template <class Real>
+using RippleState = strainwave::RippleSensorState<Real, max_gauges, max_pairs>;
 template <class Real>
 using Sample = strainwave::TorqueSensorSample<max_gauges, Real>;
 
@@ -29,9 +38,29 @@ bool start(Config<Real>& config, State<Real>& state) {
   return strainwave::check(config).ok();
 }
 
+/// Starts with what the filter had learned where that belongs to it.
 template <class Real>
-Real advance(const Config<Real>& config, State<Real>& state, const Sample<Real>& sample) {
+bool start(const RippleConfig<Real>& config, RippleState<Real>& state) {
+  const auto kept = strainwave::learned(config.filter, state.filter);
+  state = strainwave::initial_state(config);
+  if (check(config.filter, kept).ok()) {
+    state.filter = strainwave::restored(config.filter, kept);
+  }
+  return strainwave::check(config).ok();
+}
+
+template <class Config, class State, class Real>
+Real advance(const Config& config, State& state, const Sample<Real>& sample) {
   return strainwave::step(config, state, sample).torque_Nm;
+}
+
+/// As a logger feeds it, by time stamps.
+template <class Real>
+Real advance_to(const RippleConfig<Real>& config, RippleState<Real>& state,
+                strainwave::SampleClock& clock, double time_s, Sample<Real> sample) {
+  sample.interval_s = static_cast<Real>(strainwave::take_stamp(clock, time_s).interval_s);
+  return advance(config, state, sample) +
+         strainwave::order_ripple(config.filter, state.filter, 0).amplitude_Nm;
 }
 
 /// What only the caller knows, for the parts that the chain does not need.
@@ -46,6 +75,8 @@ struct Parts {
   strainwave::TorqueCalibration<Real> calibration;
   strainwave::Gains<Real, max_gauges> gains;
   strainwave::OscillatorFilterConfig<Real, max_orders> filter;
+  strainwave::RippleFilterConfig<Real, max_pairs> ripple_filter;
+  strainwave::TrackingNotchConfig<Real, max_orders> notch;
   strainwave::Phase phase;
   Real real = Real(0);
   std::uint32_t raw = 0;
@@ -103,8 +134,13 @@ Real of_configurations(const Parts<Real>& parts) {
                                strainwave::converted<Other>(parts.calibration),
                                strainwave::converted<Other, max_orders>(parts.filter)};
   const auto config = strainwave::converted<Real, max_gauges, max_orders>(other);
-  const bool usable = check(parts.gear).ok() && check(parts.rosettes[0]).ok() &&
-                      check(parts.amplifier).ok() && check(config).ok();
+  const RippleConfig<Other> other_ripple = {
+      other.converter, other.gains, other.calibration,
+      strainwave::converted<Other, max_pairs>(parts.ripple_filter), static_cast<Other>(parts.real)};
+  const auto ripple = strainwave::converted<Real, max_gauges, max_pairs>(other_ripple);
+  const bool usable = check(ripple).ok() && check(parts.gear).ok() &&
+                      check(parts.rosettes[0]).ok() && check(parts.amplifier).ok() &&
+                      check(config).ok();
   return usable ? strainwave::noise_factor(config.gains) : Real(-1);
 }
 
@@ -122,9 +158,21 @@ Real of_filter(const Parts<Real>& parts) {
 }
 
 template <class Real>
+Real of_notch(const Parts<Real>& parts) {
+  using Other = std::conditional_t<std::is_same_v<Real, float>, double, float>;
+  const auto other = strainwave::converted<Other, max_orders>(parts.notch);
+  const auto config = strainwave::converted<Real, max_orders>(other);
+  auto state = strainwave::initial_state(config);
+  strainwave::TrackingNotchSample<Real> sample;
+  sample.measured_torque_Nm = parts.real;
+  sample.motor_phase = parts.phase;
+  return check(config).ok() ? strainwave::step(config, state, sample).torque_Nm : Real(-1);
+}
+
+template <class Real>
 Real all_parts(Parts<Real>& parts) {
   return of_units(parts) + of_gear_and_gauges(parts) + of_bridge(parts) + of_configurations(parts) +
-         of_filter(parts);
+         of_filter(parts) + of_notch(parts);
 }
 
 }  // namespace
@@ -147,6 +195,27 @@ float freestanding_step_float(const Config<float>& config, State<float>& state,
 double freestanding_step_double(const Config<double>& config, State<double>& state,
                                 const Sample<double>& sample) {
   return advance(config, state, sample);
+}
+
+bool freestanding_start_ripple_float(const RippleConfig<float>& config, RippleState<float>& state) {
+  return start(config, state);
+}
+
+bool freestanding_start_ripple_double(const RippleConfig<double>& config,
+                                      RippleState<double>& state) {
+  return start(config, state);
+}
+
+float freestanding_step_ripple_float(const RippleConfig<float>& config, RippleState<float>& state,
+                                     strainwave::SampleClock& clock, double time_s,
+                                     const Sample<float>& sample) {
+  return advance_to(config, state, clock, time_s, sample);
+}
+
+double freestanding_step_ripple_double(const RippleConfig<double>& config,
+                                       RippleState<double>& state, strainwave::SampleClock& clock,
+                                       double time_s, const Sample<double>& sample) {
+  return advance_to(config, state, clock, time_s, sample);
 }
 
 float freestanding_parts_float(Parts<float>& parts) { return all_parts(parts); }

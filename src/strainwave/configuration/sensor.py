@@ -1,21 +1,23 @@
-"""From a joint file to the core's configuration: what the file knows, checked by the core."""
+"""From a joint file to the core's configuration of the sensor: what the file knows, checked."""
 
 from __future__ import annotations
 
-from fractions import Fraction
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING
 
 from strainwave import _core
+from strainwave.configuration.filters import (
+    oscillator_filter_of,
+    ripple_filter_of,
+    running_ripple_filter,
+)
+from strainwave.configuration.sections import required
 from strainwave.errors import InputError
-from strainwave.joint import order_value
+from strainwave.joint import RippleFilter
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from strainwave.joint import Joint
-    from strainwave.joint.provenance import Section
-
-SectionType = TypeVar("SectionType", bound="Section")
 
 
 def gear_of(joint: Joint) -> _core.Gear:
@@ -36,55 +38,12 @@ def gear_of(joint: Joint) -> _core.Gear:
     InputError
         If the section is missing.
     """
-    gear = _required(joint, "gear", joint.gear)
+    gear = required(joint, "gear", joint.gear)
     return _core.Gear(
         ratio=gear.ratio,
         configuration=_core.GearConfiguration[gear.configuration],
         rated_torque_Nm=gear.rated_torque_Nm,
         output_direction=gear.output_direction,
-    )
-
-
-def oscillator_filter_of(joint: Joint) -> _core.OscillatorFilterConfig:
-    """Build the oscillator filter's configuration of a joint.
-
-    Parameters
-    ----------
-    joint : Joint
-        A joint with a section ``[ripple_filter]``, and ``[gear]`` where an order needs its ratio.
-
-    Returns
-    -------
-    OscillatorFilterConfig
-        Orders, variances, protection.
-
-    Raises
-    ------
-    InputError
-        If a section is missing.
-    """
-    section = _required(joint, "ripple_filter", joint.ripple_filter)
-    ratio = None if joint.gear is None else joint.gear.ratio
-    orders = []
-    for order in section.orders:
-        value = order_value(order, ratio)
-        # A fraction of a float ratio may have more digits than the core keeps; its value has not.
-        exact = isinstance(value, Fraction) and max(value.numerator, value.denominator) < 2**31
-        orders.append(value if exact else float(value))
-    variances = list(section.process_noise_variances_Nm2)
-    given = {
-        name: value
-        for name in ("minimum_travel_rad", "minimum_speed_rad_s", "variance_limit_ratio")
-        if (value := getattr(section, name)) is not None
-    }
-    return _core.OscillatorFilterConfig(
-        orders=orders,
-        process_noise_variance_Nm2=variances[0] if len(variances) == 1 else variances,
-        measurement_noise_variance_Nm2=section.measurement_noise_variance_Nm2,
-        initial_variance_Nm2=section.initial_variance_Nm2,
-        sample_period_s=section.sample_period_s,
-        rotation_source=_core.RotationSource[section.rotation_source],
-        **given,
     )
 
 
@@ -107,7 +66,7 @@ def calibration_of(joint: Joint) -> _core.TorqueCalibration:
     InputError
         If a section is missing.
     """
-    section = _required(joint, "torque_calibration", joint.torque_calibration)
+    section = required(joint, "torque_calibration", joint.torque_calibration)
     drifts = {}
     if joint.temperature is not None:
         temperature = joint.temperature
@@ -136,23 +95,33 @@ def sensor_of(joint: Joint) -> _core.TorqueSensorConfig:
     ----------
     joint : Joint
         A joint with the sections ``[gear]``, ``[gauges]`` (converter included),
-        ``[torque_calibration]`` and ``[ripple_filter]``; without ``[gains]`` they are all 1.
+        ``[torque_calibration]`` and ``[ripple_filter]``, whose ``method`` is the filter; without
+        ``[gains]`` they are all 1. The ripple filter takes its sample period from ``[signals]``.
 
     Returns
     -------
     TorqueSensorConfig
-        Configuration for `strainwave.TorqueSensor`.
+        Configuration for `strainwave.TorqueSensor`; what its ripple filter starts with is
+        `learned_of` the joint.
 
     Raises
     ------
     InputError
-        If a section or the converter is missing.
+        If a section, the converter or, for the ripple filter, the sampling rate is missing.
     """
+    filter_config: _core.RippleFilterConfig | _core.OscillatorFilterConfig
+    if isinstance(joint.ripple_filter, RippleFilter):
+        filter_config = ripple_filter_of(joint)
+        sample_period_s = _sample_period_s(joint)
+    else:
+        filter_config = oscillator_filter_of(joint)
+        sample_period_s = filter_config.sample_period_s
     return _core.TorqueSensorConfig(
         converter=converter_of(joint),
         gains=gains_of(joint),
         calibration=calibration_of(joint),
-        filter=oscillator_filter_of(joint),
+        filter=filter_config,
+        sample_period_s=sample_period_s,
     )
 
 
@@ -174,7 +143,7 @@ def converter_of(joint: Joint) -> _core.Converter:
     InputError
         If the section or the converter is missing.
     """
-    gauges = _required(joint, "gauges", joint.gauges)
+    gauges = required(joint, "gauges", joint.gauges)
     if (
         gauges.converter_bits is None
         or gauges.converter_minimum_V is None
@@ -212,7 +181,7 @@ def gains_of(joint: Joint) -> _core.Gains:
     """
     if joint.gains is not None:
         return _core.Gains(list(joint.gains.gains))
-    return _core.Gains([1.0] * _required(joint, "gauges", joint.gauges).channel_count)
+    return _core.Gains([1.0] * required(joint, "gauges", joint.gauges).channel_count)
 
 
 def verify(joint: Joint) -> None:
@@ -231,14 +200,19 @@ def verify(joint: Joint) -> None:
     InputError
         If a section cannot be used; the message begins with its name.
     """
+    has_gear = joint.gear is not None
+    filter_builder: Callable[[Joint], object] = oscillator_filter_of
+    has_filter = joint.ripple_filter is not None
+    if isinstance(joint.ripple_filter, RippleFilter):
+        filter_builder = running_ripple_filter
+        has_filter = has_gear or joint.misalignment is None
     has_converter = joint.gauges is not None and joint.gauges.converter_bits is not None
-    needs_gear = joint.gear is not None
     builders: tuple[tuple[str, bool, Callable[[Joint], object]], ...] = (
-        ("gear", joint.gear is not None, gear_of),
+        ("gear", has_gear, gear_of),
         ("gauges", has_converter, converter_of),
         ("gains", joint.gains is not None, gains_of),
-        ("torque_calibration", joint.torque_calibration is not None and needs_gear, calibration_of),
-        ("ripple_filter", joint.ripple_filter is not None, oscillator_filter_of),
+        ("torque_calibration", joint.torque_calibration is not None and has_gear, calibration_of),
+        ("ripple_filter", has_filter, filter_builder),
     )
     for name, is_present, build in builders:
         if is_present:
@@ -248,10 +222,12 @@ def verify(joint: Joint) -> None:
                 raise InputError(f"[{name}] {error}") from error
 
 
-def _required(joint: Joint, name: str, section: SectionType | None) -> SectionType:
-    if section is None:
+def _sample_period_s(joint: Joint) -> float:
+    """Return the time between two rows, which the ripple filter goes by where rows have no time."""
+    rate_Hz = required(joint, "signals", joint.signals).sampling_rate_Hz
+    if rate_Hz is None:
         raise InputError(
-            f'joint "{joint.identity.name}": there is no section [{name}]; expected it for this '
-            "configuration, so fill it first"
+            f'joint "{joint.identity.name}": [signals] has no sampling_rate_Hz; expected it for '
+            "the chain with the ripple filter, so add it"
         )
-    return section
+    return 1.0 / rate_Hz

@@ -1,0 +1,1 @@
+"""How close to the true torque each method of removing ripple comes: `make bench-accuracy`."""

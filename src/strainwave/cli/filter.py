@@ -1,0 +1,124 @@
+"""`strainwave filter`: remove the ripple from a recording, and say what was found in it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Literal
+
+import cyclopts
+
+if TYPE_CHECKING:
+    from strainwave.records import FilteredLog
+
+
+def filter_command(
+    log: Path,
+    /,
+    *,
+    out: Path,
+    map_: Annotated[tuple[str, ...], cyclopts.Parameter(name="--map", show_default=False)] = (),
+    angle_side: Literal["motor", "output"] | None = None,
+    ratio: str | None = None,
+    joint: Path | None = None,
+    method: str | None = None,
+    rated_torque: float | None = None,
+    rate: float | None = None,
+    json: bool = False,
+) -> None:
+    """Remove the ripple from a recording in CSV or Parquet, of any length.
+
+    Example: strainwave filter run.csv --map time=t_s,angle=q:deg,torque=tau_Nm --angle-side output
+    --ratio 160 --rated-torque 100 --out clean.parquet
+
+    Parameters
+    ----------
+    log : Path
+        The recording: .csv, .tsv, .txt, .parquet or .pq.
+    out : Path
+        Where the result goes: .csv or .parquet, one row for each row of the recording.
+    map_ : tuple of str
+        Which columns are what: key=column[:unit] pairs by commas, with the keys time, angle, speed,
+        torque and expected-torque. Units are s, rad, rad/s and Nm without; a minus before the
+        column turns its sign. May be given several times.
+    angle_side : {"motor", "output"}
+        The side that angle or speed was measured on.
+    ratio : str
+        Motor turns per output turn, such as 160 or 120.5.
+    joint : Path
+        The joint file, which says what the options leave open.
+    method : str
+        How the ripple is removed; an unknown name lists all. Without, the joint file's method, else
+        the ripple filter.
+    rated_torque : float
+        Full scale, Nm; estimated from the recording where nothing says it.
+    rate : float
+        Rows a second, Hz, where the recording has no column of time.
+    json : bool
+        Print the result as JSON.
+    """
+    from rich.progress import BarColumn, TaskProgressColumn, TextColumn, TimeElapsedColumn
+    from rich.progress import Progress as Bar
+
+    from strainwave.cli.output import print_json, progress_console, result_console
+    from strainwave.records import Options, filter_log, parse_mapping, parse_ratio
+
+    options = Options(
+        mapping=parse_mapping(map_),
+        angle_side=angle_side,
+        ratio=None if ratio is None else parse_ratio(ratio),
+        rated_torque_Nm=rated_torque,
+        rate_Hz=rate,
+    )
+    console = progress_console()
+    with Bar(
+        TextColumn("{task.description}"),
+        BarColumn(),
+        TaskProgressColumn(),
+        TimeElapsedColumn(),
+        console=console,
+        # Where nobody watches, a bar is noise.
+        disable=not console.is_terminal,
+        transient=True,
+    ) as bar:
+        task = bar.add_task("reading", total=1.0)
+        result = filter_log(
+            log,
+            out,
+            options,
+            joint_path=joint,
+            method=method,
+            progress=lambda step, share: bar.update(task, description=step, completed=share),
+        )
+    for warning in result.warnings:
+        console.print(f"strainwave: warning: {log}: {warning}", soft_wrap=True, markup=False)
+    if json:
+        print_json(result.as_dict())
+        return
+    lines = result_console()
+    for line in _summary(result):
+        lines.print(line, soft_wrap=True, markup=False)
+
+
+def _summary(result: FilteredLog) -> list[str]:
+    survey = result.survey
+    lines = [
+        f"{result.out}: {survey.rows} rows over {survey.timing.duration_s:.4g} s at "
+        f"{survey.timing.rate_Hz or 0.0:.5g} Hz, method {result.method}, rated torque "
+        f"{result.rated_torque_Nm:g} Nm ({result.layout.rated_torque_source})"
+    ]
+    settings = result.ripple_settings
+    if settings is not None:
+        terms = [name for name in ("load", "speed") if getattr(settings, f"{name}_terms")]
+        source = "chosen on the recording" if settings.is_chosen else "as told or standard"
+        lines.append(
+            f"  memory {settings.config.memory_turns:g} motor turns, "
+            f"{' and '.join(terms) if terms else 'no load or speed'} terms: {source}"
+        )
+    if result.ripple_rms_Nm is not None:
+        lines.append(
+            f"  torque {result.torque_before_rms_Nm:.4g} Nm rms before and "
+            f"{result.torque_after_rms_Nm:.4g} Nm after; ripple {result.ripple_rms_Nm:.4g} Nm rms"
+        )
+    flagged = [f"{name} {count}" for name, count in result.rows_by_flag.items() if count]
+    lines.append(f"  rows with a flag: {', '.join(flagged) or 'none'}")
+    return lines

@@ -1,0 +1,23 @@
+"""From a joint file to the core's configuration: what the file knows, checked by the core."""
+
+from strainwave.configuration.filters import learned_of, oscillator_filter_of, ripple_filter_of
+from strainwave.configuration.sensor import (
+    calibration_of,
+    converter_of,
+    gains_of,
+    gear_of,
+    sensor_of,
+    verify,
+)
+
+__all__ = [
+    "calibration_of",
+    "converter_of",
+    "gains_of",
+    "gear_of",
+    "learned_of",
+    "oscillator_filter_of",
+    "ripple_filter_of",
+    "sensor_of",
+    "verify",
+]

@@ -1,0 +1,1 @@
+"""What a recording itself says about the joint."""

@@ -1,0 +1,1 @@
+"""Ways of removing ripple from a recording, all behind one interface: for use and comparison."""

@@ -1,0 +1,196 @@
+"""A recording in, a file of cleaned torque out: the whole work of `strainwave filter`."""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from strainwave import _core
+from strainwave.errors import InputError
+from strainwave.joint import read_joint
+from strainwave.methods.registry import METHOD_NAMES, Setting, build_method
+from strainwave.records.checks import check_method, check_output, check_survey
+from strainwave.records.columns import find_columns
+from strainwave.records.filtered_log import FilteredLog
+from strainwave.records.findings import warnings_of
+from strainwave.records.in_order import InOrder
+from strainwave.records.layout import build_layout
+from strainwave.records.method_setting import (
+    choose_wave_factor,
+    joint_as_asked,
+    method_name,
+    read_excerpt,
+    remarks_on,
+)
+from strainwave.records.opening import open_recording
+from strainwave.records.options import Options
+from strainwave.records.passes import Progress, sample_rows, survey_recording, untold
+from strainwave.records.survey import estimated_rated_torque_Nm
+from strainwave.records.writer import result_file
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    from numpy.typing import NDArray
+
+    from strainwave.methods.interface import Cleaned, Method
+    from strainwave.records.signals import Rows
+
+
+def filter_log(
+    path: Path,
+    out: Path,
+    options: Options | None = None,
+    *,
+    joint_path: Path | None = None,
+    method: str | None = None,
+    build: Callable[[str, Setting], Method] | None = None,
+    progress: Progress = untold,
+) -> FilteredLog:
+    """Remove the ripple from a recording of any length.
+
+    The recording is read twice in chunks: once to see what it holds, and once to filter it.
+
+    Parameters
+    ----------
+    path : Path
+        The recording: CSV or Parquet.
+    out : Path
+        Where the result goes: .csv or .parquet; written whole or not at all.
+    options : Options, optional
+        How the recording is read; what it leaves open the joint file says.
+    joint_path : Path, optional
+        The joint file.
+    method : str, optional
+        Name of the method; without, that of the joint file, else the ripple filter.
+    build : callable, optional
+        Builds a method from its name and a `Setting`; that of `strainwave.methods.registry`
+        without.
+    progress : Progress
+        Is told how far the work is.
+
+    Returns
+    -------
+    FilteredLog
+        What was done.
+
+    Raises
+    ------
+    InputError
+        If something that was given cannot be used; nothing is written then.
+    """
+    path, out, options = Path(path), Path(out), options or Options()
+    check_output(out, path, joint_path)
+    joint = None if joint_path is None else read_joint(joint_path).joint
+    name = method_name(method, joint)
+    if build is None:
+        check_method(name, METHOD_NAMES)
+        build = build_method
+    layout = build_layout(options, joint)
+    recording = open_recording(path)
+    found = find_columns(layout.columns, recording.names, recording.column_count, recording.source)
+    survey = survey_recording(recording, layout, found, progress)
+    check_survey(recording.source, layout, found, survey)
+    rated_Nm = layout.rated_torque_Nm or estimated_rated_torque_Nm(survey)
+    joint = joint_as_asked(joint, options)
+    excerpt = read_excerpt(sample_rows(recording, layout, found, survey))
+    wave = choose_wave_factor(joint, layout.ratio, excerpt)
+    setting = Setting(survey.sample_period_s, layout.ratio, rated_Nm, joint, wave.factor, excerpt)
+    remover = build(name, setting)
+    log = FilteredLog(
+        path,
+        out,
+        layout,
+        survey,
+        name,
+        rated_Nm,
+        (*warnings_of(layout, survey, rated_Nm), *remarks_on(wave)),
+        wave_factor=float(wave.factor),
+        wave_factor_source=wave.source,
+        ripple_settings=getattr(remover, "settings", None),
+    )
+    return _filter(log, InOrder(remover), sample_rows(recording, layout, found, survey, progress))
+
+
+def _filter(log: FilteredLog, method: Method, parts: Iterator[Rows]) -> FilteredLog:
+    tally = _Tally()
+    waiting = _Waiting()
+    with result_file(log.out) as write:
+
+        def put(cleaned: Cleaned) -> None:
+            if len(cleaned):
+                time_s, measured_Nm = waiting.pop(len(cleaned))
+                tally.take(measured_Nm, cleaned)
+                write(time_s, measured_Nm, cleaned)
+
+        for rows in parts:
+            waiting.push(rows)
+            put(method.process(rows.samples))
+        put(method.finish())
+        if tally.rows != log.survey.rows:
+            raise InputError(
+                f"{log.path}: it had {log.survey.rows} rows at first and {tally.rows} later; "
+                "expected a recording that does not change, so wait until it is complete"
+            )
+    before_Nm, after_Nm, ripple_Nm = tally.rms_Nm()
+    return replace(
+        log,
+        rows_by_flag=tally.rows_by_flag,
+        torque_before_rms_Nm=before_Nm,
+        torque_after_rms_Nm=after_Nm,
+        ripple_rms_Nm=ripple_Nm,
+    )
+
+
+class _Waiting:
+    """Time and torque of the rows that a method still holds back."""
+
+    def __init__(self) -> None:
+        self._parts: deque[tuple[NDArray[np.float64], NDArray[np.float64]]] = deque()
+
+    def push(self, rows: Rows) -> None:
+        if len(rows):
+            self._parts.append((rows.log_time_s, rows.samples.torque_Nm))
+
+    def pop(self, count: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        times, torques = [], []
+        while count > 0:
+            time_s, torque_Nm = self._parts.popleft()
+            times.append(time_s[:count])
+            torques.append(torque_Nm[:count])
+            if len(time_s) > count:
+                self._parts.appendleft((time_s[count:], torque_Nm[count:]))
+            count -= min(count, len(time_s))
+        return np.concatenate(times), np.concatenate(torques)
+
+
+class _Tally:
+    """Counts flags and adds up squares of what is written."""
+
+    def __init__(self) -> None:
+        self.rows = 0
+        self.rows_by_flag = {str(flag.name): 0 for flag in _core.StatusFlag}
+        self._good = 0
+        self._squares = np.zeros(3)
+
+    def take(self, measured_Nm: NDArray[np.float64], cleaned: Cleaned) -> None:
+        self.rows += len(cleaned)
+        for flag in _core.StatusFlag:
+            bits = np.uint32(flag.value)
+            self.rows_by_flag[str(flag.name)] += int(np.count_nonzero(cleaned.status & bits))
+        signals = np.stack([measured_Nm, cleaned.torque_Nm, cleaned.ripple_Nm])
+        good = (cleaned.status & np.uint32(_core.FAULT_MASK)) == 0
+        good &= np.isfinite(signals).all(axis=0)
+        self._good += int(np.count_nonzero(good))
+        self._squares += (signals[:, good] ** 2).sum(axis=1)
+
+    def rms_Nm(self) -> tuple[float | None, float | None, float | None]:
+        if self._good == 0:
+            return (None, None, None)
+        before, after, ripple = (math.sqrt(squares / self._good) for squares in self._squares)
+        return (before, after, ripple)

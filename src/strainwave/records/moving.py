@@ -1,0 +1,201 @@
+"""When the motor of a recording moves, how fast, and which rows only repeat the one before."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from strainwave.records.histogram import LogHistogram
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+MOVING_RAD_S: Final = 0.5
+"""The motor moves where it is faster than this, 5 turns a minute."""
+LARGEST_MOTOR_SPEED_RAD_S: Final = 1500.0
+"""No strain wave gear is driven faster than this, 14300 turns a minute."""
+_TURN_RAD = 2.0 * math.pi
+_CHANGES_PER_SPEED = 8
+# Stamps closer than this say nothing of a speed.
+_SHORTEST_S = 1e-12
+
+
+@dataclass(frozen=True)
+class Moving:
+    """How the motor moves.
+
+    Attributes
+    ----------
+    largest_speed_rad_s, typical_speed_rad_s, speed_99th_percentile_rad_s : float or None
+        Of the motor while it moves (typical: the median), rad/s; None where it never does.
+    moving_rows : int
+        Rows while it moves.
+    repeated_rows : int
+        Rows that repeat angle and torque of the row before while it moves.
+    rest_torque_noise_Nm : float or None
+        Standard deviation of the torque's noise from row to row at rest, Nm; None without rest.
+    """
+
+    largest_speed_rad_s: float | None
+    typical_speed_rad_s: float | None
+    speed_99th_percentile_rad_s: float | None
+    moving_rows: int
+    repeated_rows: int
+    rest_torque_noise_Nm: float | None
+
+
+@dataclass
+class _Since:
+    """What happened since the value last changed."""
+
+    rows: int = 0
+    repeated: int = 0
+    squares: float = 0.0
+
+
+class MovingTally:
+    """Takes angles or speeds of rows in order, chunk by chunk.
+
+    The speed between two changes of the angle counts for all rows between them, so that samples
+    which are held for several rows make nothing look faster than it is. It is taken over eight
+    changes, so that stamps which come in bursts make nothing look fast either.
+
+    Parameters
+    ----------
+    gain : float
+        Motor turns for one turn of the measured side.
+    is_speed : bool
+        Speeds are taken instead of angles.
+    wrapped : bool
+        Angles go back to their start after a turn.
+    """
+
+    def __init__(self, gain: float, *, is_speed: bool = False, wrapped: bool = False) -> None:
+        self._gain = gain
+        self._is_speed = is_speed
+        self._wrapped = wrapped
+        self._speeds = LogHistogram()
+        self._last_row: tuple[float, float, float] | None = None
+        self._last_change: tuple[float, float] = (0.0, 0.0)
+        self._since = _Since()
+        self._group: tuple[NDArray[np.float64], NDArray[np.float64]] = (np.empty(0), np.empty(0))
+        self._moving = 0
+        self._repeated = 0
+        self._rest_rows = 0
+        self._rest_squares = 0.0
+
+    def take(
+        self,
+        time_s: NDArray[np.float64],
+        value: NDArray[np.float64],
+        torque_Nm: NDArray[np.float64],
+    ) -> None:
+        """Take the next rows, each later than the last.
+
+        Parameters
+        ----------
+        time_s, value, torque_Nm : numpy.ndarray
+            Time, s, angle, rad (or speed, rad/s), and torque, Nm, of shape (rows,); time and value
+            are finite.
+        """
+        if not len(time_s):
+            return
+        if self._last_row is None:
+            self._last_row = (float(time_s[0]), float(value[0]), float(torque_Nm[0]))
+            self._last_change = self._last_row[:2]
+            time_s, value, torque_Nm = time_s[1:], value[1:], torque_Nm[1:]
+            if not len(time_s):
+                return
+        _, last_value, last_torque_Nm = self._last_row
+        value_steps = np.diff(value, prepend=last_value)
+        torque_steps = np.diff(torque_Nm, prepend=last_torque_Nm)
+        repeated = (value_steps == 0.0) & (torque_steps == 0.0)
+        squares = np.where(np.isfinite(torque_steps), torque_steps**2, 0.0)
+        # A mapped speed says for every row by itself how fast the motor is.
+        ends = np.arange(len(value)) if self._is_speed else np.flatnonzero(value_steps != 0.0)
+        self._count(time_s, value, repeated, squares, ends)
+        self._last_row = (float(time_s[-1]), float(value[-1]), float(torque_Nm[-1]))
+
+    def _count(
+        self,
+        time_s: NDArray[np.float64],
+        value: NDArray[np.float64],
+        repeated: NDArray[np.bool_],
+        squares: NDArray[np.float64],
+        ends: NDArray[np.intp],
+    ) -> None:
+        past = _Since(len(value), int(repeated.sum()), float(squares.sum()))
+        if not len(ends):
+            self._since.rows += past.rows
+            self._since.repeated += past.repeated
+            self._since.squares += past.squares
+            return
+        since = self._since
+        rows = np.diff(ends + 1, prepend=0)
+        repeats = np.diff(np.cumsum(repeated)[ends], prepend=0)
+        power = np.diff(np.cumsum(squares)[ends], prepend=0.0)
+        rows[0] += since.rows
+        repeats[0] += since.repeated
+        power[0] += since.squares
+        steps = np.diff(value[ends], prepend=self._last_change[1])
+        if self._wrapped:
+            steps -= _TURN_RAD * np.rint(steps / _TURN_RAD)
+        times = np.diff(time_s[ends], prepend=self._last_change[0])
+        np.maximum(times, _SHORTEST_S, out=times)
+        speeds = np.abs(value[ends] if self._is_speed else steps / times) * self._gain
+        moving = speeds > MOVING_RAD_S
+        self._moving += int(rows[moving].sum())
+        self._repeated += int(repeats[moving].sum())
+        self._rest_rows += int(rows[~moving].sum())
+        self._rest_squares += float(power[~moving].sum())
+        if self._is_speed:
+            self._speeds.add(speeds[moving])
+        else:
+            self._add_speeds(steps, times)
+        self._last_change = (float(time_s[ends[-1]]), float(value[ends[-1]]))
+        last = int(ends[-1]) + 1
+        self._since = _Since(
+            past.rows - last, int(repeated[last:].sum()), float(squares[last:].sum())
+        )
+
+    def _add_speeds(self, steps: NDArray[np.float64], times: NDArray[np.float64]) -> None:
+        steps = np.concatenate([self._group[0], steps])
+        times = np.concatenate([self._group[1], times])
+        whole = len(steps) - len(steps) % _CHANGES_PER_SPEED
+        self._add_groups(
+            steps[:whole].reshape(-1, _CHANGES_PER_SPEED).sum(axis=1),
+            times[:whole].reshape(-1, _CHANGES_PER_SPEED).sum(axis=1),
+        )
+        self._group = (steps[whole:], times[whole:])
+
+    def _add_groups(self, steps: NDArray[np.float64], times: NDArray[np.float64]) -> None:
+        speeds = np.abs(steps / times) * self._gain
+        self._speeds.add(speeds[speeds > MOVING_RAD_S])
+
+    def finish(self) -> Moving:
+        """Say how the motor moved.
+
+        Returns
+        -------
+        Moving
+            Of all rows that were taken.
+        """
+        steps, times = self._group
+        if len(steps):
+            self._add_groups(steps.sum(keepdims=True), times.sum(keepdims=True))
+            self._group = (np.empty(0), np.empty(0))
+        rest_rows = self._rest_rows + self._since.rows
+        rest_squares = self._rest_squares + self._since.squares
+        some = self._speeds.count > 0
+        return Moving(
+            self._speeds.largest if some else None,
+            self._speeds.quantile(0.5),
+            self._speeds.quantile(0.99),
+            self._moving,
+            self._repeated,
+            # The difference of two rows has twice the variance of one.
+            math.sqrt(0.5 * rest_squares / rest_rows) if rest_rows else None,
+        )

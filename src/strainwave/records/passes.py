@@ -1,0 +1,95 @@
+"""The two passes over a recording: what it holds, and its rows as methods take them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Protocol
+
+from strainwave.records.conversion import Converter
+from strainwave.records.signals import Rows, SampleBuilder
+from strainwave.records.survey import Survey, Surveyor
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from strainwave.records.columns import FoundColumn
+    from strainwave.records.layout import Layout
+    from strainwave.records.raw import Recording
+
+
+class Progress(Protocol):
+    """What is told how far the work is."""
+
+    def __call__(self, step: str, share: float, /) -> None:
+        """Take what is being done, and the share of it that is done, 0 to 1."""
+        ...
+
+
+def untold(_step: str, _share: float, /) -> None:
+    """Tell nobody."""
+
+
+def survey_recording(
+    recording: Recording,
+    layout: Layout,
+    found: dict[str, FoundColumn],
+    progress: Progress = untold,
+) -> Survey:
+    """Pass over a recording once, and say what it holds.
+
+    Parameters
+    ----------
+    recording : Recording
+        The recording.
+    layout : Layout
+        How it is read.
+    found : dict
+        Its columns, by key.
+    progress : Progress
+        Is told how far the work is.
+
+    Returns
+    -------
+    Survey
+        What it holds.
+    """
+    converter = Converter(layout, found)
+    surveyor = Surveyor(layout)
+    for chunk, share in recording.chunks(found):
+        surveyor.take(converter.convert(chunk))
+        progress("surveying", share)
+    return surveyor.finish()
+
+
+def sample_rows(
+    recording: Recording,
+    layout: Layout,
+    found: dict[str, FoundColumn],
+    survey: Survey,
+    progress: Progress = untold,
+) -> Iterator[Rows]:
+    """Read a recording as the samples that methods take.
+
+    Parameters
+    ----------
+    recording : Recording
+        The recording.
+    layout : Layout
+        How it is read.
+    found : dict
+        Its columns, by key.
+    survey : Survey
+        What it holds.
+    progress : Progress
+        Is told how far the work is.
+
+    Yields
+    ------
+    Rows
+        Consecutive rows.
+    """
+    converter = Converter(layout, found)
+    builder = SampleBuilder(layout, survey)
+    for chunk, share in recording.chunks(found):
+        yield builder.take(converter.convert(chunk))
+        progress("filtering", share)
+    yield builder.finish()

@@ -1,0 +1,84 @@
+"""Writes cleaned torque as CSV or Parquet, rows at a time, through a temporary file."""
+
+from __future__ import annotations
+
+import contextlib
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.csv
+import pyarrow.parquet as pq
+
+from strainwave.atomic import replaced_atomically
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+    from pathlib import Path
+
+    from numpy.typing import NDArray
+
+    from strainwave.methods.interface import Cleaned
+
+COLUMNS: Final = ("time_s", "torque_measured_Nm", "torque_Nm", "ripple_Nm", "status")
+_SCHEMA = pa.schema([*((name, pa.float64()) for name in COLUMNS[:-1]), (COLUMNS[-1], pa.uint32())])
+_ROWS_PER_WRITE = 1 << 17
+_CSV_HEADER = (",".join(COLUMNS) + "\n").encode()
+
+
+@contextlib.contextmanager
+def result_file(
+    path: Path,
+) -> Iterator[Callable[[NDArray[np.float64], NDArray[np.float64], Cleaned], None]]:
+    """Write a result whole or not at all.
+
+    Parameters
+    ----------
+    path : Path
+        Ends in .csv or .parquet; numbers in CSV have the digits that give them back exactly, and a
+        value that is not there is an empty field.
+
+    Yields
+    ------
+    callable
+        Writes consecutive rows: time, s, measured torque, Nm, and what a method made of them.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be written.
+    """
+    is_csv = path.suffix.lower() == ".csv"
+    with replaced_atomically(path) as stream:
+        writer: pyarrow.csv.CSVWriter | pq.ParquetWriter
+        if is_csv:
+            # Arrow puts names in quotes, which no reader of ours needs.
+            stream.write(_CSV_HEADER)
+            writer = pyarrow.csv.CSVWriter(
+                stream,
+                _SCHEMA,
+                write_options=pyarrow.csv.WriteOptions(include_header=False),
+            )
+        else:
+            writer = pq.ParquetWriter(stream, _SCHEMA)
+
+        pending: list[pa.RecordBatch] = []
+
+        def flush() -> None:
+            # One write is one row group of Parquet: few large ones are read faster.
+            writer.write_table(pa.Table.from_batches(pending, _SCHEMA))
+            pending.clear()
+
+        def write(
+            time_s: NDArray[np.float64], measured_Nm: NDArray[np.float64], cleaned: Cleaned
+        ) -> None:
+            numbers = (time_s, measured_Nm, cleaned.torque_Nm, cleaned.ripple_Nm)
+            arrays = [pa.array(values, from_pandas=is_csv) for values in numbers]
+            arrays.append(pa.array(cleaned.status))
+            pending.append(pa.record_batch(arrays, schema=_SCHEMA))
+            if sum(batch.num_rows for batch in pending) >= _ROWS_PER_WRITE:
+                flush()
+
+        with writer:
+            yield write
+            flush()

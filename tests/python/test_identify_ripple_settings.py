@@ -1,0 +1,121 @@
+"""Memory and terms by likelihood, on simulated recordings that know nothing of the filter."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy import stats
+
+from benchmarks.accuracy.evaluation import log_of
+from benchmarks.accuracy.joint import FULL_SCALE_NM, make_joint, simulate
+from benchmarks.accuracy.motion import constant_plan
+from benchmarks.accuracy.ripple import MISMATCH, RIGHT
+from strainwave import RippleFilter, RippleFilterConfig, StatusFlag
+from strainwave.identify.ripple_settings import (
+    MEMORIES_TURNS,
+    RippleSettings,
+    _likelihood,
+    choose_ripple_settings,
+)
+from strainwave.methods.registry import Setting, build_method
+from strainwave.samples import Samples
+
+GIVEN = {
+    "torque_noise_Nm": 0.04,
+    "torque_walk_Nm_per_sqrt_s": 1.3,
+    "initial_amplitude_Nm": 2.0,
+    "rated_torque_Nm": FULL_SCALE_NM,
+}
+
+
+def _choose(excerpt: Samples) -> RippleSettings:
+    return choose_ripple_settings(excerpt, [2, 4, 6], [2, 4], 10.0, GIVEN)
+
+
+def _simulated(scenario: str, seed: int) -> Samples:
+    log = log_of(simulate(make_joint(scenario, seed)))
+    return Samples(log.time_s, log.wave_angle_rad, log.torque_Nm, log.expected_torque_Nm)
+
+
+def _made(amplitude: np.ndarray, angle_rad: np.ndarray, seed: int = 4) -> Samples:
+    time_s = np.arange(len(angle_rad)) * 1e-3
+    noise_Nm = 0.04 * np.random.default_rng(seed).standard_normal(len(angle_rad))
+    torque_Nm = 3.0 * np.sin(time_s) + amplitude * np.cos(2 * angle_rad) + noise_Nm
+    return Samples(time_s, angle_rad, torque_Nm, np.zeros(len(angle_rad)))
+
+
+@pytest.mark.parametrize("seed", [31, 32])
+def test_load_and_speed_are_found_where_they_are(seed: int) -> None:
+    found = _choose(_simulated(RIGHT, seed))
+    assert found.is_chosen
+    assert (found.load_terms, found.speed_terms) == (True, True)
+    # With the right structure nothing is left that a short memory would have to follow.
+    assert found.config.memory_turns >= 80.0
+    assert [order.with_load for order in found.config.orders] == [True, True, False]
+
+
+@pytest.mark.parametrize("seed", [31, 32])
+def test_what_the_model_leaves_out_shortens_the_memory(seed: int) -> None:
+    found = _choose(_simulated(MISMATCH, seed))
+    assert found.load_terms
+    assert found.config.memory_turns <= 20.0
+
+
+def test_a_ripple_that_stays_has_no_terms_and_the_longest_memory() -> None:
+    angle_rad = 120.0 * np.arange(40_000) * 1e-3
+    found = _choose(_made(np.full(40_000, 1.5), angle_rad))
+    assert found.is_chosen
+    assert (found.load_terms, found.speed_terms) == (False, False)
+    assert found.config.memory_turns == max(MEMORIES_TURNS)
+
+
+def test_a_ripple_that_swells_within_turns_has_a_short_memory() -> None:
+    angle_rad = 120.0 * np.arange(40_000) * 1e-3
+    swelling = 1.5 * (1 + 0.6 * np.sin(angle_rad / 12.0))
+    found = _choose(_made(swelling, angle_rad))
+    assert found.config.memory_turns <= 5.0
+
+
+def test_a_short_recording_keeps_the_standard_and_few_turns_get_no_terms() -> None:
+    few_rows = _choose(_made(np.ones(900), 150.0 * np.arange(900) * 1e-3))
+    assert (few_rows.is_chosen, few_rows.config.memory_turns) == (False, 10.0)
+    at_rest = _choose(_made(np.ones(9000), np.zeros(9000)))
+    assert not at_rest.is_chosen
+    joint = make_joint(RIGHT, 33)
+    log = log_of(simulate(joint, constant_plan(7.0)))
+    part = Samples(log.time_s, log.wave_angle_rad, log.torque_Nm, log.expected_torque_Nm)
+    assert 100 < np.ptp(part.motor_angle_rad) / (2 * np.pi) < 300
+    found = _choose(part)
+    assert found.is_chosen
+    assert (found.load_terms, found.speed_terms) == (False, False)
+
+
+def test_the_likelihood_is_students() -> None:
+    excerpt = _simulated(RIGHT, 34)
+    config = RippleFilterConfig(orders=[2, 4, 6], memory_turns=20.0, **GIVEN)
+    result = RippleFilter(config).process(
+        excerpt.time_s, excerpt.motor_angle_rad, excerpt.torque_Nm
+    )
+    moving = (result.innovation_variance_Nm2 > 0) & (result.status & StatusFlag.at_rest.value == 0)
+    rows = np.flatnonzero(moving)
+    rows = rows[len(rows) // 8 :]
+    deviations = np.sqrt(result.innovation_variance_Nm2[rows])
+    scales = np.geomspace(0.2, 5.0, 2000)
+    by_scale = [
+        np.mean(stats.t.logpdf(result.innovation_Nm[rows[::50]], 4, scale=s * deviations[::50]))
+        for s in scales
+    ]
+    best = scales[int(np.argmax(by_scale))]
+    whole = np.mean(stats.t.logpdf(result.innovation_Nm[rows], 4, scale=best * deviations))
+    constant = stats.t.logpdf(0.0, 4)
+    assert _likelihood(excerpt, config) == pytest.approx(whole - constant, abs=2e-3)
+
+
+@pytest.mark.parametrize("name", ["ripple", "smoother"])
+def test_a_method_chooses_on_the_excerpt_it_is_given(name: str) -> None:
+    excerpt = _simulated(RIGHT, 35)
+    method = build_method(name, Setting(1e-3, None, FULL_SCALE_NM, excerpt=excerpt))
+    assert method.settings.load_terms
+    without = build_method(name, Setting(1e-3, None, FULL_SCALE_NM))
+    assert not without.settings.is_chosen
+    assert without.settings.config.memory_turns == 10.0
