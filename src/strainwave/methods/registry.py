@@ -27,7 +27,7 @@ def _ripple(setting: Setting) -> Method:
 
 
 def _smoother(setting: Setting) -> Method:
-    from strainwave.methods.ripple import Smoother  # noqa: PLC0415
+    from strainwave.methods.smoother import Smoother  # noqa: PLC0415
 
     return Smoother(setting)
 

@@ -1,4 +1,4 @@
-"""The ripple filter and the ripple smoother as methods for recordings."""
+"""The ripple filter as a method for recordings: what it is told, chooses and starts with."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 from strainwave import _core
 from strainwave.configuration import learned_of, ripple_filter_of
 from strainwave.identify.ripple_settings import RippleSettings, choose_ripple_settings
-from strainwave.methods.interface import Cleaned, joined, nothing
+from strainwave.methods.interface import Cleaned, nothing
 from strainwave.ripple_filter import RippleFilter
 from strainwave.samples import Samples
 
@@ -29,6 +29,11 @@ STANDARD_MEMORY_TURNS: Final = 10.0
 STANDARD_NOISE: Final = 1e-3
 STANDARD_WALK_PER_SQRT_S: Final = 1e-3 * 1000.0**0.5
 STANDARD_INITIAL_AMPLITUDE: Final = 0.05
+#: Memories that are run backwards to know the ripple of the first row.
+LEARNING_MEMORIES: Final = 5.0
+#: Delays and leads that the core compensates, s.
+LONGEST_DELAY_S: Final = 0.05
+LONGEST_LEAD_S: Final = 0.005
 
 
 def ripple_settings(setting: Setting) -> RippleSettings:
@@ -81,15 +86,17 @@ class Ripple:
     Parameters
     ----------
     setting : Setting
-        See `ripple_settings`; coefficients kept in the joint file are started with.
+        See `ripple_settings`. Where there is an excerpt, the first row is filtered with what
+        `learned_at_the_start` says; coefficients kept in the joint file are started with.
     """
 
     def __init__(self, setting: Setting) -> None:
         joint = _joint_with_section(setting)
         self._settings = ripple_settings(setting)
-        self._filter = RippleFilter(
-            self._settings.config, learned=None if joint is None else learned_of(joint)
-        )
+        learned = None if joint is None else learned_of(joint)
+        if learned is None and setting.excerpt is not None:
+            learned = learned_at_the_start(setting.excerpt, self._settings.config)
+        self._filter = RippleFilter(self._settings.config, learned=learned)
 
     @property
     def settings(self) -> RippleSettings:
@@ -133,90 +140,55 @@ class Ripple:
         return nothing()
 
 
-class Smoother:
-    """The ripple filter's model forwards and backwards: for logs, not for control.
+def learned_at_the_start(
+    excerpt: Samples, config: _core.RippleFilterConfig
+) -> _core.LearnedRipple | None:
+    """Learn a recording's ripple as it is at the first row, by running the filter backwards.
 
-    A block of rows is handed out once `looks_ahead` further rows are there. Blocks are counted from
-    the first row, so that it makes no difference how a log is cut.
+    A recording need not begin with rows from which the filter still has to learn.
 
     Parameters
     ----------
-    setting : Setting
-        See `ripple_settings`.
-    block_rows : int
-        Rows handed out together.
-    looks_ahead_rows : int
-        Rows looked at beyond a block; some memories of the filter should fit into them.
+    excerpt : Samples
+        The first rows.
+    config : RippleFilterConfig
+        The configuration that the recording will be filtered with.
+
+    Returns
+    -------
+    LearnedRipple or None
+        Coefficients with their standard deviations; None where a delay cannot be turned round,
+        because it would be too long a lead, or where the motor does not move.
     """
-
-    def __init__(
-        self, setting: Setting, *, block_rows: int = 50_000, looks_ahead_rows: int = 25_000
-    ) -> None:
-        self._settings = ripple_settings(setting)
-        self._smoother = _core.RippleSmoother(self._settings.config)
-        self._block_rows = block_rows
-        self._looks_ahead_rows = looks_ahead_rows
-        self._pending = Samples(np.empty(0), np.empty(0), np.empty(0), np.empty(0))
-
-    @property
-    def settings(self) -> RippleSettings:
-        """The configuration, and how it was chosen."""
-        return self._settings
-
-    def process(self, samples: Samples, /) -> Cleaned:
-        """Take the next rows.
-
-        Parameters
-        ----------
-        samples : Samples
-            The rows that follow those of the last call.
-
-        Returns
-        -------
-        Cleaned
-            The blocks that are ready.
-        """
-        self._pending = _appended(self._pending, samples)
-        window = self._block_rows + self._looks_ahead_rows
-        parts = []
-        start = 0
-        while len(self._pending) - start >= window:
-            parts.append(self._smoothed(start, start + window, self._block_rows))
-            start += self._block_rows
-        self._pending = _cut(self._pending, start, len(self._pending))
-        return joined(parts)
-
-    def finish(self) -> Cleaned:
-        """Hand out the rest.
-
-        Returns
-        -------
-        Cleaned
-            The rows that were held back.
-        """
-        count = len(self._pending)
-        parts = []
-        start = 0
-        while count - start > 0:
-            end = min(start + self._block_rows + self._looks_ahead_rows, count)
-            # The last rows go out together: there is nothing ahead of them.
-            finished = self._block_rows if end < count else end - start
-            parts.append(self._smoothed(start, end, finished))
-            start += finished
-        self._pending = _cut(self._pending, count, count)
-        return joined(parts)
-
-    def _smoothed(self, start: int, end: int, finished_rows: int) -> Cleaned:
-        rows = _cut(self._pending, start, end)
-        return Cleaned(
-            *self._smoother.process(
-                rows.time_s,
-                rows.motor_angle_rad,
-                rows.torque_Nm,
-                rows.expected_torque_Nm,
-                finished_rows,
-            )
+    if not -LONGEST_LEAD_S <= -config.angle_to_torque_delay_s <= LONGEST_DELAY_S:
+        return None
+    turned = np.concatenate([[0.0], np.nancumsum(np.abs(np.diff(excerpt.motor_angle_rad)))])
+    learning_rad = 2 * np.pi * LEARNING_MEMORIES * config.memory_turns
+    rows = int(np.searchsorted(turned, learning_rad)) + 1
+    backwards = slice(min(rows, len(turned)) - 1, None, -1)
+    backward_filter = RippleFilter(
+        _core.RippleFilterConfig(
+            orders=config.orders,
+            memory_turns=config.memory_turns,
+            torque_noise_Nm=config.torque_noise_Nm,
+            torque_walk_Nm_per_sqrt_s=config.torque_walk_Nm_per_sqrt_s,
+            initial_amplitude_Nm=config.initial_amplitude_Nm,
+            rated_torque_Nm=config.rated_torque_Nm,
+            reference_speed_rad_s=config.reference_speed_rad_s,
+            angle_to_torque_delay_s=-config.angle_to_torque_delay_s,
+            minimum_speed_rad_s=config.minimum_speed_rad_s,
+            frozen=config.frozen,
         )
+    )
+    result = backward_filter.process(
+        -excerpt.time_s[backwards],
+        excerpt.motor_angle_rad[backwards],
+        excerpt.torque_Nm[backwards],
+        expected_torque_Nm=excerpt.expected_torque_Nm[backwards],
+    )
+    at_rest = np.uint32(_core.StatusFlag.at_rest.value)
+    moved = np.any((result.innovation_variance_Nm2 > 0) & ((result.status & at_rest) == 0))
+    return backward_filter.learned() if moved else None
 
 
 def _joint_with_section(setting: Setting) -> Joint | None:
@@ -224,21 +196,3 @@ def _joint_with_section(setting: Setting) -> Joint | None:
     joint = setting.joint
     section = None if joint is None else joint.ripple_filter
     return joint if section is not None and section.method == "ripple" else None
-
-
-def _cut(samples: Samples, start: int, end: int) -> Samples:
-    return Samples(
-        np.ascontiguousarray(samples.time_s[start:end]),
-        np.ascontiguousarray(samples.motor_angle_rad[start:end]),
-        np.ascontiguousarray(samples.torque_Nm[start:end]),
-        np.ascontiguousarray(samples.expected_torque_Nm[start:end]),
-    )
-
-
-def _appended(first: Samples, second: Samples) -> Samples:
-    return Samples(
-        np.concatenate([first.time_s, second.time_s]),
-        np.concatenate([first.motor_angle_rad, second.motor_angle_rad]),
-        np.concatenate([first.torque_Nm, second.torque_Nm]),
-        np.concatenate([first.expected_torque_Nm, second.expected_torque_Nm]),
-    )
