@@ -68,7 +68,9 @@ def test_unusable_input_ends_with_2_and_one_sentence(
     assert sorted(tmp_path.iterdir()) == before
 
 
-@pytest.mark.parametrize("command", [("demo",), ("joint", "new"), ("joint", "check")])
+@pytest.mark.parametrize(
+    "command", [("demo",), ("fidelity",), ("joint", "new"), ("joint", "check")]
+)
 def test_help_has_an_example(tmp_path: Path, command: tuple[str, ...]) -> None:
     shown = run(*command, "--help", cwd=tmp_path)
     assert shown.returncode == 0

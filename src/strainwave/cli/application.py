@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Final
 import cyclopts
 
 from strainwave.cli.demo import demo
+from strainwave.cli.fidelity import fidelity
 from strainwave.cli.filter import filter_command
 from strainwave.cli.joint import joint_app
 from strainwave.errors import InputError
@@ -28,6 +29,7 @@ app = cyclopts.App(
 )
 app.command(demo)
 app.command(filter_command, name="filter")
+app.command(fidelity)
 app.command(joint_app)
 
 

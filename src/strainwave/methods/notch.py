@@ -52,7 +52,7 @@ class Notch:
 
     def __init__(self, setting: Setting, bandwidth_Hz: float = STANDARD_BANDWIDTH_HZ) -> None:
         self._notch = _core.TrackingNotch(
-            orders=_orders(setting),
+            orders=notch_orders(setting),
             bandwidth_Hz=bandwidth_Hz,
             sample_period_s=setting.sample_period_s,
         )
@@ -88,7 +88,7 @@ class Notch:
         return nothing()
 
 
-def _orders(setting: Setting) -> Sequence[Fraction | _core.Rational]:
+def notch_orders(setting: Setting) -> Sequence[Fraction | _core.Rational]:
     """Take the orders of the joint file's filter, or else the gear's two strongest."""
     joint = setting.joint
     section = None if joint is None else joint.ripple_filter

@@ -39,7 +39,7 @@ LONGEST_LEAD_S: Final = 0.005
 def ripple_settings(setting: Setting) -> RippleSettings:
     """Choose the ripple filter's configuration.
 
-    That of the joint file's ``[ripple_filter]`` of method ``"ripple"``, where there is one; else orders
+    That which the setting brings along; else that of the joint file's ``[ripple_filter]`` of method ``"ripple"``, where there is one; else orders
     2, 4 and 6 of the wave, with memory and terms chosen by likelihood on an excerpt of the recording;
     else the standard memory and constant terms.
 
@@ -53,6 +53,8 @@ def ripple_settings(setting: Setting) -> RippleSettings:
     RippleSettings
         The configuration, and what was chosen.
     """
+    if setting.ripple_settings is not None:
+        return setting.ripple_settings
     joint = _joint_with_section(setting)
     if joint is not None:
         config = ripple_filter_of(joint)

@@ -7,6 +7,7 @@ from fractions import Fraction
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from strainwave.identify.ripple_settings import RippleSettings
     from strainwave.joint import Joint
     from strainwave.samples import Samples
 
@@ -29,6 +30,8 @@ class Setting:
         Turns of the wave against the sensing elements per motor turn, the gear's factor m.
     excerpt : Samples or None
         Rows of the recording for a method that chooses its own tuning; None where there are none.
+    ripple_settings : RippleSettings or None
+        What the ripple filter has chosen before, to build the same again; None to choose.
     """
 
     sample_period_s: float
@@ -37,3 +40,4 @@ class Setting:
     joint: Joint | None = None
     wave_factor: Fraction = Fraction(1)
     excerpt: Samples | None = None
+    ripple_settings: RippleSettings | None = None

@@ -12,6 +12,7 @@ import numpy as np
 
 from strainwave import _core
 from strainwave.errors import InputError
+from strainwave.fidelity.warning import fidelity_warnings
 from strainwave.joint import read_joint
 from strainwave.methods.registry import METHOD_NAMES, Setting, build_method
 from strainwave.records.checks import check_method, check_output, check_survey
@@ -88,6 +89,7 @@ def filter_log(
     check_output(out, path, joint_path)
     joint = None if joint_path is None else read_joint(joint_path).joint
     name = method_name(method, joint)
+    is_known = build is None
     if build is None:
         check_method(name, METHOD_NAMES)
         build = build_method
@@ -102,6 +104,7 @@ def filter_log(
     wave = choose_wave_factor(joint, layout.ratio, excerpt)
     setting = Setting(survey.sample_period_s, layout.ratio, rated_Nm, joint, wave.factor, excerpt)
     remover = build(name, setting)
+    swallowed = fidelity_warnings(name, setting, remover) if is_known else ()
     log = FilteredLog(
         path,
         out,
@@ -109,7 +112,7 @@ def filter_log(
         survey,
         name,
         rated_Nm,
-        (*warnings_of(layout, survey, rated_Nm), *remarks_on(wave)),
+        (*warnings_of(layout, survey, rated_Nm), *remarks_on(wave), *swallowed),
         wave_factor=float(wave.factor),
         wave_factor_source=wave.source,
         ripple_settings=getattr(remover, "settings", None),

@@ -15,12 +15,16 @@ import numpy as np
 
 from strainwave.arrays import contiguous
 from strainwave.errors import InputError
+from strainwave.fidelity.checks import (
+    require_frequencies,
+    require_number,
+    require_rate,
+    samples_of,
+)
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-#: Longest run of a filter under test; more would not fit into memory.
-MOST_SAMPLES: Final = 50_000_000
 #: The delay comes from two frequencies that lie this share to either side.
 SPREAD: Final = 0.005
 #: Gain below which a delay says nothing.
@@ -145,12 +149,14 @@ def complex_gain(
     InputError
         If a parameter is out of range or the filter's output is not finite.
     """
-    _require_rate(motor_speed_rad_s, sample_period_s)
-    _require_number("settling_s", settling_s, "s")
-    _require_frequencies([frequency_Hz], sample_period_s, spread=0.0)
+    require_rate(motor_speed_rad_s, sample_period_s)
+    require_number("settling_s", settling_s, "s")
+    require_frequencies([frequency_Hz], sample_period_s, spread=0.0)
     periods = max(4, int(np.ceil(2.0 * frequency_Hz)))
-    settling = _samples("settling_s", settling_s, sample_period_s)
-    samples = settling + _samples("one over frequency_Hz", periods / frequency_Hz, sample_period_s)
+    settling = samples_of("settling_s", settling_s, sample_period_s)
+    samples = settling + samples_of(
+        "one over frequency_Hz", periods / frequency_Hz, sample_period_s
+    )
     time_s = sample_period_s * np.arange(samples)
     turning = 2 * np.pi * frequency_Hz * time_s
     output = _run(removes_ripple, np.sin(turning), motor_speed_rad_s)
@@ -195,9 +201,9 @@ def pass_through(
     InputError
         If a parameter is out of range or the filter's output is not finite.
     """
-    _require_rate(motor_speed_rad_s, sample_period_s)
-    _require_number("settling_s", settling_s, "s")
-    frequencies = _require_frequencies(frequencies_Hz, sample_period_s, spread=SPREAD)
+    require_rate(motor_speed_rad_s, sample_period_s)
+    require_number("settling_s", settling_s, "s")
+    frequencies = require_frequencies(frequencies_Hz, sample_period_s, spread=SPREAD)
     gains = np.empty(len(frequencies))
     delays = np.empty(len(frequencies))
     for n, frequency_Hz in enumerate(frequencies):
@@ -253,12 +259,12 @@ def contact_step(
     InputError
         If a parameter is out of range or the filter's output is not finite.
     """
-    _require_rate(motor_speed_rad_s, sample_period_s)
-    _require_number("contact_torque_Nm", contact_torque_Nm, "Nm", lowest=-np.inf)
-    _require_number("before_s", before_s, "s")
-    _require_number("after_s", after_s, "s", lowest=sample_period_s)
-    before = _samples("before_s", before_s, sample_period_s)
-    after = _samples("after_s", after_s, sample_period_s)
+    require_rate(motor_speed_rad_s, sample_period_s)
+    require_number("contact_torque_Nm", contact_torque_Nm, "Nm", lowest=-np.inf)
+    require_number("before_s", before_s, "s")
+    require_number("after_s", after_s, "s", lowest=sample_period_s)
+    before = samples_of("before_s", before_s, sample_period_s)
+    after = samples_of("after_s", after_s, sample_period_s)
     torque = np.zeros(before + after)
     torque[before:] = contact_torque_Nm
     output = _run(removes_ripple, torque, motor_speed_rad_s)
@@ -281,55 +287,3 @@ def _run(
             f"them not finite: expected {len(torque_Nm)} numbers; correct the filter or its tuning"
         )
     return output
-
-
-def _require_rate(motor_speed_rad_s: float, sample_period_s: float) -> None:
-    _require_number("motor_speed_rad_s", motor_speed_rad_s, "rad/s", lowest=-np.inf)
-    _require_number("sample_period_s", sample_period_s, "s", lowest=np.finfo(np.float64).tiny)
-
-
-def _require_frequencies(
-    frequencies_Hz: ArrayLike, sample_period_s: float, *, spread: float
-) -> NDArray[np.float64]:
-    frequencies = contiguous("frequencies_Hz", frequencies_Hz, np.float64)
-    highest_Hz = 0.5 / sample_period_s
-    wrong = ~((frequencies > 0) & ((1 + spread) * frequencies < highest_Hz))
-    if len(frequencies) == 0 or np.any(wrong):
-        found = f"holds {frequencies[wrong][0]:g} Hz" if np.any(wrong) else "is empty"
-        besides = f" with {spread:.1%} to spare for the delay" if spread else ""
-        raise InputError(
-            f"frequencies_Hz {found}: expected frequencies above 0 and below {highest_Hz:g} Hz, "
-            f"half the sampling rate{besides}; choose others"
-        )
-    return frequencies
-
-
-def _require_number(name: str, value: object, unit: str, *, lowest: float = 0.0) -> None:
-    shown = f"a {type(value).__name__}"
-    if isinstance(value, int | float | np.integer | np.floating):
-        try:
-            real = float(value)
-        except OverflowError:
-            real = np.inf
-        if np.isfinite(real) and real >= lowest:
-            return
-        shown = f"{real:g}"
-    elif isinstance(value, str):
-        shown = repr(value)
-    if lowest == -np.inf:
-        least = ""
-    elif lowest > 1e-300:
-        least = f" of at least {lowest:g}, one sample"
-    else:
-        least = " of at least 0" if lowest == 0 else " above 0"
-    raise InputError(f"{name} = {shown}: expected a finite number{least}; give it in {unit}")
-
-
-def _samples(name: str, time_s: float, sample_period_s: float) -> int:
-    samples = time_s / sample_period_s
-    if samples > MOST_SAMPLES:
-        raise InputError(
-            f"{name} = {time_s:g} s is {samples:.3g} samples: expected at most {MOST_SAMPLES} "
-            f"samples of {sample_period_s:g} s; choose a shorter time or a longer sample_period_s"
-        )
-    return round(samples)
