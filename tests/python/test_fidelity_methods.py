@@ -187,7 +187,7 @@ def test_the_ripple_filter_delays_slow_torque_as_its_design_says() -> None:
 def test_the_limit_of_delay_is_that_of_a_notch_and_a_millisecond() -> None:
     subject = of_method("taghirad1999-4")
     response = speed_response(subject, 20.0, is_wide=False)
-    a_rad_s = 20.0 / (2 * np.pi * 2)
+    a_rad_s = 20.0 / (2 * np.pi * 1.5)
     away_rad_s = 2 * np.pi * response.frequency_Hz - 20.0 * np.array([[2.0], [4.0]])
     expected_s = 1e-3 + (a_rad_s / (a_rad_s**2 + away_rad_s**2)).sum(axis=0)
     assert delay_limit_s(subject, response) == pytest.approx(expected_s, rel=1e-9)

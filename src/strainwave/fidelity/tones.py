@@ -1,7 +1,8 @@
 """Gain and delay of true torque at constant speed, from small tones beside ripple and noise.
 
-The method is run twice over recordings that differ in nothing but the tones, so that ripple and
-noise drop out of the difference. Tones have whole periods in what is measured.
+The method is run twice over recordings that differ in nothing but the tones' sign, so that ripple,
+noise and what grows with the square of the tones drop out of the difference. Tones have whole
+periods in what is measured.
 """
 
 from __future__ import annotations
@@ -43,6 +44,8 @@ SPREAD_BINS: Final = 2
 #: what the noise does to the difference of two runs; the fast ones do not, because a filter that
 #: looks for contacts would take them for such.
 JUDGED_TONES: Final = 10.0
+#: They are no more than this, of the rated torque.
+MOST_TONES: Final = 0.01
 WIDE_TONES: Final = 1.0
 #: Half width of a notch that is left out of the verdict, orders; and the same of a low order, as a
 #: share of it.
@@ -118,11 +121,13 @@ def speed_response(
     speed = np.full(settling + measured, motor_speed_rad_s)
     recording = ripple_recording(subject, speed, orders)
     plain_Nm = subject.run(recording)
+    most = MOST_TONES * subject.rated_torque_Nm / subject.noise_Nm
+    size = min(JUDGED_TONES, max(most, WIDE_TONES))
     judged, wide = _centre_bins(measured_s, subject.sample_period_s)
-    below, above = _answers(subject, recording, plain_Nm, measured, judged, JUDGED_TONES)
+    below, above = _answers(subject, recording, measured, judged, size)
     centres = judged
     if is_wide and len(wide):
-        wider = _answers(subject, recording, plain_Nm, measured, wide, WIDE_TONES)
+        wider = _answers(subject, recording, measured, wide, WIDE_TONES)
         below, above = np.append(below, wider[0]), np.append(above, wider[1])
         centres = np.append(judged, wide)
     passes = np.minimum(np.abs(below), np.abs(above)) > SMALLEST_GAIN_WITH_DELAY
@@ -219,7 +224,6 @@ def _centre_bins(
 def _answers(
     subject: Subject,
     recording: Samples,
-    plain_Nm: NDArray[np.float64],
     measured: int,
     centres: NDArray[np.int64],
     size: float,
@@ -229,7 +233,10 @@ def _answers(
     tones = np.sort(np.concatenate([centres - SPREAD_BINS, centres + SPREAD_BINS]))
     period_Nm = _multisine(tones, measured, size * subject.noise_Nm)
     added_Nm = np.tile(period_Nm, math.ceil(rows / measured))[-rows:]
-    change_Nm = subject.run(with_torque(recording, added_Nm)) - plain_Nm
+    change_Nm = 0.5 * (
+        subject.run(with_torque(recording, added_Nm))
+        - subject.run(with_torque(recording, -added_Nm))
+    )
     given = np.fft.rfft(added_Nm[-measured:])
     got = np.fft.rfft(change_Nm[-measured:])
     below, above = (

@@ -28,9 +28,9 @@ SWALLOWS: Final = "swallows true torque"
 GAIN_ERROR_LIMIT: Final = 0.05
 #: Largest delay from 1 to 20 Hz, s, before what the notches at the removed lines bring along.
 DELAY_LIMIT_S: Final = 1e-3
-#: Such a notch may forget within two motor turns, which are fewer than the ripple filter ever
-#: chooses for itself.
-NOTCH_MEMORY_TURNS: Final = 2.0
+#: Such a notch may forget within so many motor turns: half of the least that the ripple filter
+#: chooses for itself, because its terms in load and speed delay too.
+NOTCH_MEMORY_TURNS: Final = 1.5
 #: Its half width, in half widths of what is left out beside the line.
 _NOTCH_SHARE: Final = 1 / (2 * np.pi * NOTCH_MEMORY_TURNS) / NOTCH_ORDERS
 #: Largest error 20 ms after a contact, of its height.
