@@ -3,13 +3,20 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from fractions import Fraction
 
 import numpy as np
 import pytest
 from scipy import linalg, signal
 
-from helpers.fidelity_joints import GEAR, joint_text, oscillator, ripple, signals
+from helpers.fidelity_joints import (
+    GEAR,
+    PERIOD_S,
+    of_method,
+    of_sections,
+    oscillator,
+    ripple,
+    signals,
+)
 from strainwave import InputError
 from strainwave.fidelity import (
     PASSES,
@@ -17,19 +24,13 @@ from strainwave.fidelity import (
     Assessment,
     Subject,
     assess,
-    assess_shortly,
     delay_limit_s,
-    subject_of_joint,
-    subject_of_setting,
 )
 from strainwave.fidelity.contacts import contact_at_rest, contact_in_motion
 from strainwave.fidelity.tones import speed_response
-from strainwave.joint import parse_joint
 from strainwave.methods.interface import Cleaned, Method, nothing
-from strainwave.methods.registry import METHOD_NAMES, Setting
 from strainwave.samples import Samples
 
-PERIOD_S = 1e-3
 SPEED_RAD_S = 156.0
 
 
@@ -54,14 +55,6 @@ def late(samples: int = 0, gain: float = 1.0) -> Subject:
         return Late(samples, gain)
 
     return Subject("late", build, PERIOD_S, 80.0, 0.08, (), (2.0, 4.0))
-
-
-def of_method(name: str) -> Subject:
-    return subject_of_setting(name, Setting(PERIOD_S, Fraction(100), 80.0))
-
-
-def of_sections(*sections: str, method: str | None = None) -> Subject:
-    return subject_of_joint(parse_joint(joint_text(*sections)).joint, method)
 
 
 def test_a_method_that_does_nothing_is_untouched() -> None:
@@ -195,74 +188,6 @@ def test_the_limit_of_delay_is_that_of_a_notch_and_a_millisecond() -> None:
     # A line once per output turn is no excuse for delaying everything.
     assert 1e-3 < delay_limit_s(slow, response)[0] < 1.3e-3
     assert np.all(speed_response(slow, SPEED_RAD_S, is_wide=False).is_judged)
-
-
-EXPECTED = {
-    "ripple": PASSES,
-    "smoother": PASSES,
-    "taghirad1999": SWALLOWS,
-    "taghirad1999-4": SWALLOWS,
-    "low-pass": SWALLOWS,
-    "notch": SWALLOWS,
-}
-
-
-@pytest.mark.parametrize("period_s", [1e-3, 2.5e-4])
-@pytest.mark.parametrize("method", EXPECTED)
-def test_verdicts_of_the_methods(method: str, period_s: float) -> None:
-    assert set(EXPECTED) == set(METHOD_NAMES) - {"oscillator"}
-    found = assess(subject_of_setting(method, Setting(period_s, Fraction(100), 80.0)))
-    assert found.verdict == EXPECTED[method]
-    assert bool(found.reasons) is (found.verdict == SWALLOWS)
-    if method == "taghirad1999":
-        assert found.gain_error_worst is not None
-        assert found.gain_error_worst.value == pytest.approx(1.0, abs=0.02)
-        assert found.step_error_at_20_ms == pytest.approx(1.0, abs=0.05)
-    if method == "low-pass":
-        # 18.1 ms at 20 Hz, of theory too; the gain is within its limit.
-        assert found.delay_worst is not None
-        assert found.delay_worst.value == pytest.approx(18.06e-3, rel=0.01)
-        assert "late" in found.reasons[0]
-    if method in {"ripple", "smoother"}:
-        assert found.gain_error_worst is not None
-        assert found.gain_error_worst.value < 0.02
-        assert found.step_error_at_20_ms < 0.01
-        assert all(
-            value is not None and 40 < value < 120
-            for response in found.responses
-            for value in response.attenuation_dB.values()
-        )
-
-
-@pytest.mark.parametrize(
-    ("process_noise", "verdict"),
-    [(1e-7, PASSES), (1e-6, PASSES), (1e-4, SWALLOWS), (1e3, SWALLOWS)],
-)
-def test_verdicts_of_oscillator_tunings(process_noise: float, verdict: str) -> None:
-    found = assess(of_sections(GEAR, oscillator(process_noise)))
-    assert found.subject.removed_orders == (2.0, 4.0)
-    assert found.verdict == verdict
-
-
-@pytest.mark.parametrize(
-    ("memory_turns", "verdict"), [(1, SWALLOWS), (3, PASSES), (10, PASSES), (40, PASSES)]
-)
-def test_verdicts_of_memories(memory_turns: float, verdict: str) -> None:
-    found = assess(of_sections(GEAR, signals(1000), ripple(memory_turns)))
-    assert found.verdict == verdict
-    terms = 'load_orders = ["2m"]\nspeed_orders = ["2m"]\n'
-    found = assess(of_sections(GEAR, signals(1000), ripple(memory_turns, terms)))
-    assert found.verdict == verdict
-
-
-@pytest.mark.parametrize("method", EXPECTED)
-def test_the_short_measurement_agrees_where_its_speed_tells(method: str) -> None:
-    subject = of_method(method)
-    if method == "notch":
-        # It takes too much at 20 rad/s, not at 50.
-        assert assess_shortly(subject).verdict == PASSES
-    else:
-        assert assess_shortly(subject).verdict == EXPECTED[method]
 
 
 def test_what_was_learned_on_the_joint_makes_no_difference() -> None:

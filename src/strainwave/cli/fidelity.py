@@ -124,7 +124,7 @@ def _torque_table(assessment: Assessment) -> Table:
 def _ripple_table(assessment: Assessment) -> Table:
     from rich.table import Table
 
-    table = Table(title="Ripple: attenuation of each order, dB (- cannot be told at that speed)")
+    table = Table(title="Ripple: attenuation of each order, dB")
     table.add_column("order", justify="right")
     for response in assessment.responses:
         table.add_column(f"{response.motor_speed_rad_s:g} rad/s", justify="right")

@@ -1,6 +1,14 @@
-"""Joint files for the tests of fidelity."""
+"""Joint files, and methods under test, for the tests of fidelity."""
 
 from __future__ import annotations
+
+from fractions import Fraction
+
+from strainwave.fidelity import Subject, subject_of_joint, subject_of_setting
+from strainwave.joint import parse_joint
+from strainwave.methods.registry import Setting
+
+PERIOD_S = 1e-3
 
 MADE = 'input = "by hand"\ncreated = 2026-11-01T08:30:00Z\nversion = "0.1.0"\n'
 
@@ -40,3 +48,13 @@ def ripple(memory_turns: float, rest: str = "") -> str:
 def joint_text(*sections: str) -> str:
     """Put a joint file together."""
     return "\n".join(['schema_version = 1\n[joint]\nname = "test"\n', *sections])
+
+
+def of_method(name: str) -> Subject:
+    """Take a method with its standard tuning."""
+    return subject_of_setting(name, Setting(PERIOD_S, Fraction(100), 80.0))
+
+
+def of_sections(*sections: str, method: str | None = None) -> Subject:
+    """Take the method of a joint file."""
+    return subject_of_joint(parse_joint(joint_text(*sections)).joint, method)
