@@ -11,6 +11,7 @@ import cyclopts
 from strainwave.cli.demo import demo
 from strainwave.cli.fidelity import fidelity
 from strainwave.cli.filter import filter_command
+from strainwave.cli.identify import identify_command
 from strainwave.cli.joint import joint_app
 from strainwave.errors import InputError
 
@@ -30,6 +31,7 @@ app = cyclopts.App(
 app.command(demo)
 app.command(filter_command, name="filter")
 app.command(fidelity)
+app.command(identify_command, name="identify")
 app.command(joint_app)
 
 

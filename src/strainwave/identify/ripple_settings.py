@@ -40,6 +40,8 @@ LEAST_TURNS_FOR_TERMS: Final = 300.0
 DEGREES_OF_FREEDOM: Final = 4.0
 #: Share of the rows in motion that is left for learning.
 LEARNING_SHARE: Final = 1 / 8
+#: Share of the rows in motion, at the end, on which terms must hold good by themselves.
+HELD_OUT_SHARE: Final = 1 / 3
 
 
 @dataclass(frozen=True)
@@ -68,6 +70,8 @@ def choose_ripple_settings(
     modulated: Sequence[Any],
     standard_memory_turns: float,
     given: Mapping[str, Any],
+    *,
+    may_have_load: bool = True,
 ) -> RippleSettings:
     """Choose memory and terms by likelihood.
 
@@ -83,6 +87,8 @@ def choose_ripple_settings(
         Memory where the recording is too short to choose.
     given : mapping
         The other arguments of `RippleFilterConfig`.
+    may_have_load : bool
+        False leaves load terms out.
 
     Returns
     -------
@@ -111,8 +117,10 @@ def choose_ripple_settings(
     if rows < LEAST_ROWS or turns < LEAST_TURNS:
         return RippleSettings(standard, *none, is_chosen=False)
     enough = turns >= LEAST_TURNS_FOR_TERMS
-    tried = (none, (True, False), (False, True), (True, True)) if enough else (none,)
+    every = (none, (True, False), (False, True), (True, True)) if enough else (none,)
+    tried = [terms for terms in every if may_have_load or not terms[0]]
     best: tuple[float, float, tuple[bool, bool]] | None = None
+    plain_held_out = -np.inf
     for terms in tried:
         scores = [_likelihood(excerpt, config(memory, terms)) for memory in MEMORIES_TURNS]
         memory_turns = next(
@@ -122,7 +130,13 @@ def choose_ripple_settings(
         )
         coefficients = 2 * len(modulated) * sum(terms)
         cost = LEAST_GAIN * any(terms) + LEAST_GAIN_OF_A_COEFFICIENT * coefficients / rows
-        if best is None or max(scores) - cost > best[0]:
+        if best is None:
+            plain_held_out = _likelihood(excerpt, config(memory_turns, terms), HELD_OUT_SHARE)
+            best = (max(scores) - cost, memory_turns, terms)
+        elif (
+            max(scores) - cost > best[0]
+            and _likelihood(excerpt, config(memory_turns, terms), HELD_OUT_SHARE) > plain_held_out
+        ):
             best = (max(scores) - cost, memory_turns, terms)
     assert best is not None
     _, memory_turns, terms = best
@@ -160,15 +174,64 @@ def _run(
     return result.innovation_Nm[rows], result.innovation_variance_Nm2[rows]
 
 
-def _likelihood(excerpt: Samples, config: _core.RippleFilterConfig) -> float:
+def _likelihood(
+    excerpt: Samples, config: _core.RippleFilterConfig, last_share: float = 1.0
+) -> float:
     """Mean logarithm of a row's likelihood, up to a constant, the scale profiled out."""
     innovation_Nm, variance_Nm2 = _run(excerpt, config)
+    first = int((1.0 - last_share) * len(innovation_Nm))
+    return _likelihood_of(innovation_Nm[first:], variance_Nm2[first:])
+
+
+def _likelihood_of(innovation_Nm: NDArray[np.float64], variance_Nm2: NDArray[np.float64]) -> float:
+    return float(np.mean(_row_likelihoods(innovation_Nm, variance_Nm2)))
+
+
+def _row_likelihoods(
+    innovation_Nm: NDArray[np.float64], variance_Nm2: NDArray[np.float64]
+) -> NDArray[np.float64]:
     squares = innovation_Nm**2 / variance_Nm2 / DEGREES_OF_FREEDOM
-    spread = 0.5 * float(np.mean(np.log(variance_Nm2)))
+    slope = 0.5 * (DEGREES_OF_FREEDOM + 1)
 
     def cost(log_scale: float) -> float:
-        tails = np.log1p(squares * np.exp(-log_scale))
-        return 0.5 * (DEGREES_OF_FREEDOM + 1) * float(np.mean(tails)) + 0.5 * log_scale
+        return slope * float(np.mean(np.log1p(squares * np.exp(-log_scale)))) + 0.5 * log_scale
 
-    found = minimize_scalar(cost, bounds=(-20.0, 20.0), method="bounded")
-    return -float(found.fun) - spread
+    log_scale = float(minimize_scalar(cost, bounds=(-20.0, 20.0), method="bounded").x)
+    likelihoods: NDArray[np.float64] = -slope * np.log1p(squares * np.exp(-log_scale))
+    return likelihoods - 0.5 * (log_scale + np.log(variance_Nm2))
+
+
+def row_likelihoods(excerpt: Samples, config: _core.RippleFilterConfig) -> NDArray[np.float64]:
+    """Compute how likely each row's innovation is.
+
+    Parameters
+    ----------
+    excerpt : Samples
+        Rows of the recording.
+    config : RippleFilterConfig
+        The filter.
+
+    Returns
+    -------
+    numpy.ndarray
+        Logarithm of the likelihood of each row in motion after learning, up to a constant.
+    """
+    return _row_likelihoods(*_run(excerpt, config))
+
+
+def innovations(excerpt: Samples, config: _core.RippleFilterConfig) -> NDArray[np.float64]:
+    """Give a recording's innovations.
+
+    Parameters
+    ----------
+    excerpt : Samples
+        Rows of the recording.
+    config : RippleFilterConfig
+        The filter.
+
+    Returns
+    -------
+    numpy.ndarray
+        Of the rows in motion after learning, Nm.
+    """
+    return _run(excerpt, config)[0]

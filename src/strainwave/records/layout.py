@@ -11,6 +11,8 @@ from strainwave.records.mapping import MappedColumn
 from strainwave.records.options import AngleSide, Options, check_options
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from strainwave.joint import Joint
     from strainwave.joint.signals import Column, Signals
 
@@ -97,7 +99,7 @@ class _Merge:
 
     def layout(self) -> Layout:
         ratio = self.chosen("--ratio", self.options.ratio, self._joint_ratio())
-        side = self.side()
+        side = "motor" if "motor-angle" in self.options.mapping else self.side()
         columns = self.columns(side)
         if side == "output" and ratio is None:
             raise InputError(
@@ -180,6 +182,7 @@ class _Merge:
         if "speed" in given and "angle" not in given and "angle" in in_joint:
             self.remarks.append("the mapped speed is used instead of the angle in the joint file")
             del in_joint["angle"]
+        given = self.motor_angle_first(given, side)
         merged = {**in_joint}
         for key, column in given.items():
             chosen = self.chosen(f"--map {key}", column, in_joint.get(key))
@@ -200,6 +203,25 @@ class _Merge:
                 "ripple"
             )
         return merged
+
+    def motor_angle_first(
+        self, given: Mapping[str, MappedColumn], side: AngleSide
+    ) -> Mapping[str, MappedColumn]:
+        if "motor-angle" not in given:
+            return given
+        if "angle" in given and self.options.angle_side == "motor":
+            raise InputError(
+                "--map: angle and motor-angle are both mapped with --angle-side motor; expected the "
+                "output's angle as angle beside motor-angle, so give --angle-side output or remove "
+                "one of them"
+            )
+        assert side == "motor"
+        if "angle" in given:
+            self.remarks.append(
+                "the ripple is taken against the motor's angle, not the output's beside it"
+            )
+        kept = {key: each for key, each in given.items() if key not in ("angle", "motor-angle")}
+        return {**kept, "angle": given["motor-angle"]}
 
     def inertia(
         self, columns: dict[str, MappedColumn], side: AngleSide, ratio: Fraction | None

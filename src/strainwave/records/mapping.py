@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 QUANTITIES: Final[dict[str, Quantity]] = {
     "time": "time",
     "angle": "angle",
+    "motor-angle": "angle",
     "speed": "speed",
     "torque": "torque",
     "expected-torque": "torque",

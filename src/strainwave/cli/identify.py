@@ -1,0 +1,140 @@
+"""`strainwave identify`: find out from a recording what a joint file needs."""
+
+from __future__ import annotations
+
+import shlex
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Literal
+
+import cyclopts
+
+if TYPE_CHECKING:
+    from strainwave.records.identified_log import IdentifiedLog
+
+_LONGEST_COMMAND = 500
+
+
+def identify_command(
+    log: Path,
+    /,
+    *,
+    out: Path,
+    map_: Annotated[tuple[str, ...], cyclopts.Parameter(name="--map", show_default=False)] = (),
+    angle_side: Literal["motor", "output"] | None = None,
+    ratio: str | None = None,
+    rated_torque: float | None = None,
+    rate: float | None = None,
+    joint: Path | None = None,
+    json: bool = False,
+) -> None:
+    """Find ratio, orders, delay, noise, memory and terms in a recording; write a joint file.
+
+    Example: strainwave identify run.csv --map time=t_s,angle=q:deg,torque=tau_Nm --angle-side output
+    --rated-torque 100 --out joint.toml
+
+    Parameters
+    ----------
+    log : Path
+        The recording: .csv, .tsv, .txt, .parquet or .pq.
+    out : Path
+        The joint file that is written: .toml.
+    map_ : tuple of str
+        Which columns are what, as for `strainwave filter`; motor-angle beside angle gives both.
+    angle_side : {"motor", "output"}
+        The side that angle or speed was measured on.
+    ratio : str
+        Motor turns per output turn, roughly; refined, or searched for without.
+    rated_torque : float
+        Full scale, Nm.
+    rate : float
+        Rows a second, Hz, where the recording has no column of time.
+    joint : Path
+        A joint file to start from; what is not identified stays as it is there.
+    json : bool
+        Print the result as JSON.
+    """
+    from strainwave.cli.output import print_json, progress_console, result_console
+    from strainwave.records import Options, parse_mapping, parse_ratio
+    from strainwave.records.identifying import identify_log
+
+    options = Options(
+        mapping=parse_mapping(map_),
+        angle_side=angle_side,
+        ratio=None if ratio is None else parse_ratio(ratio),
+        rated_torque_Nm=rated_torque,
+        rate_Hz=rate,
+    )
+    given = {
+        "--angle-side": angle_side,
+        "--ratio": ratio,
+        "--rated-torque": rated_torque,
+        "--rate": rate,
+        "--joint": joint,
+        "--out": out,
+    }
+    words = ["strainwave", "identify", str(log)]
+    for text in map_:
+        words += ["--map", text]
+    for name, value in given.items():
+        words += [] if value is None else [name, str(value)]
+    command = shlex.join(words)
+    usable = command.isprintable() and len(command) <= _LONGEST_COMMAND
+    result = identify_log(log, out, options, joint_path=joint, command=command if usable else None)
+    console = progress_console()
+    for warning in result.warnings:
+        console.print(f"strainwave: warning: {log}: {warning}", soft_wrap=True, markup=False)
+    if json:
+        print_json(result.as_dict())
+        return
+    lines = result_console()
+    for line in _table(result):
+        lines.print(line, soft_wrap=True, markup=False)
+
+
+def _table(result: IdentifiedLog) -> list[str]:
+    from strainwave.records.identified_log import measured_text
+
+    gearing, ripple = result.gearing, result.ripple
+    sections = ", ".join(f"[{name}]" for name in result.sections)
+    lines = [f"{result.out}: {sections} from {result.survey.rows} rows of {result.path}"]
+
+    def row(name: str, value: str) -> None:
+        lines.append(f"  {name:<14} {value}")
+
+    ratio = "not known"
+    if gearing.ratio is not None:
+        spread = gearing.ratio_standard_uncertainty
+        ratio = f"{float(gearing.ratio):.7g} as told"
+        if spread is not None:
+            ratio = measured_text(float(gearing.ratio), spread)
+    row("ratio", f"{ratio}, m = {float(gearing.factor):.6g}")
+    delay = ripple.delay
+    row(
+        "delay",
+        "0 (not told)"
+        if delay is None
+        else f"{measured_text(1e3 * delay.delay_s, 1e3 * delay.standard_uncertainty_s)} ms",
+    )
+    row("noise", f"{ripple.noise_Nm:.3g} Nm")
+    settings = ripple.settings
+    if settings is not None:
+        terms = [name for name in ("load", "speed") if getattr(settings, f"{name}_terms")]
+        row(
+            "memory",
+            f"{settings.config.memory_turns:g} motor turns, "
+            f"{' and '.join(terms) if terms else 'no load or speed'} terms",
+        )
+    for order in ripple.present:
+        phase = f"phase {order.phase_rad:+.3f} rad" if order.is_steady else "phase wanders"
+        row(
+            f"order {order.order:g}",
+            f"{measured_text(order.amplitude_Nm, order.amplitude_standard_uncertainty_Nm)} Nm, "
+            f"{phase}",
+        )
+    for each in ripple.output_cycles:
+        row(
+            f"{each.cycles} per output",
+            f"{measured_text(each.amplitude_Nm, each.amplitude_standard_uncertainty_Nm)} Nm, "
+            "not removed",
+        )
+    return lines

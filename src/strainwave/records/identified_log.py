@@ -1,0 +1,157 @@
+"""What `strainwave identify` found, as plain values."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from strainwave.identify.recording import Ripple
+    from strainwave.records.layout import Layout
+    from strainwave.records.survey import Survey
+
+
+def measured_text(value: float, standard_uncertainty: float) -> str:
+    """Write a value with the digits that its uncertainty leaves it.
+
+    Parameters
+    ----------
+    value, standard_uncertainty : float
+        The value and its standard uncertainty, in the same unit.
+
+    Returns
+    -------
+    str
+        Such as ``160.04 +- 0.17``.
+    """
+    if not 0.0 < standard_uncertainty < math.inf:
+        return f"{value:.7g}"
+    digits = max(0, 1 - math.floor(math.log10(standard_uncertainty)))
+    return f"{value:.{digits}f} +- {standard_uncertainty:.{digits}f}"
+
+
+@dataclass(frozen=True)
+class Gearing:
+    """Ratio and factor m, and where they come from.
+
+    Attributes
+    ----------
+    ratio : fractions.Fraction or None
+        Motor turns per output turn.
+    ratio_standard_uncertainty : float or None
+        None where the ratio was not measured.
+    factor : fractions.Fraction
+        Turns of the wave per motor turn, m.
+    source : str
+        "line", "angles", "told" or "unknown".
+    output_direction : int
+        1 or -1; 0 where not known.
+    says : tuple of str
+        Sentences for a person.
+    """
+
+    ratio: Fraction | None
+    ratio_standard_uncertainty: float | None
+    factor: Fraction
+    source: str
+    output_direction: int = 0
+    says: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class IdentifiedLog:
+    """What was found in a recording.
+
+    Attributes
+    ----------
+    path, out : Path
+        The recording, and the joint file that was written.
+    layout : Layout
+        How the recording was read.
+    survey : Survey
+        What it holds.
+    rated_torque_Nm : float
+        Full scale, Nm.
+    gearing : Gearing
+        Ratio and factor m.
+    ripple : Ripple
+        Orders, delay, noise, memory, terms.
+    sections : tuple of str
+        Sections of the joint file that were filled.
+    warnings : tuple of str
+        What a person should know, and what the recording does not tell.
+    """
+
+    path: Path
+    out: Path
+    layout: Layout
+    survey: Survey
+    rated_torque_Nm: float
+    gearing: Gearing
+    ripple: Ripple
+    sections: tuple[str, ...]
+    warnings: tuple[str, ...]
+
+    def as_dict(self) -> dict[str, Any]:
+        """Plain values by name, for `--json`.
+
+        Returns
+        -------
+        dict
+            Nothing but texts, finite numbers, lists, dictionaries and None.
+        """
+        gearing, ripple, survey = self.gearing, self.ripple, self.survey
+        settings, delay = ripple.settings, ripple.delay
+        return {
+            "input": str(self.path),
+            "output": str(self.out),
+            "ratio": None if gearing.ratio is None else float(gearing.ratio),
+            "ratio_standard_uncertainty": gearing.ratio_standard_uncertainty,
+            "ratio_source": gearing.source,
+            "factor_m": float(gearing.factor),
+            "output_direction": gearing.output_direction or None,
+            "delay_s": None if delay is None else delay.delay_s,
+            "delay_standard_uncertainty_s": (
+                None if delay is None else delay.standard_uncertainty_s
+            ),
+            "memory_turns": None if settings is None else settings.config.memory_turns,
+            "noise_Nm": ripple.noise_Nm,
+            "orders": [
+                {
+                    "order": order.order,
+                    "amplitude_Nm": order.amplitude_Nm,
+                    "phase_rad": order.phase_rad,
+                    "amplitude_standard_uncertainty_Nm": order.amplitude_standard_uncertainty_Nm,
+                    "is_steady": order.is_steady,
+                }
+                for order in ripple.present
+            ],
+            "cycles_per_output_turn": [
+                {
+                    "cycles": each.cycles,
+                    "amplitude_Nm": each.amplitude_Nm,
+                    "amplitude_standard_uncertainty_Nm": each.amplitude_standard_uncertainty_Nm,
+                }
+                for each in ripple.output_cycles
+            ],
+            "terms": {
+                "load": settings is not None and settings.load_terms,
+                "speed": settings is not None and settings.speed_terms,
+                "direction": False,
+                "is_chosen": settings is not None and settings.is_chosen,
+            },
+            "rated_torque_Nm": self.rated_torque_Nm,
+            "rated_torque_source": self.layout.rated_torque_source,
+            "rate_Hz": survey.timing.rate_Hz,
+            "rows": survey.rows,
+            "share_repeated": survey.share_repeated,
+            "shortest_interval_s": survey.timing.smallest_interval_s,
+            "longest_interval_s": survey.timing.largest_interval_s,
+            "motor_turns": ripple.motor_turns,
+            "sections": list(self.sections),
+            "warnings": list(self.warnings),
+        }
