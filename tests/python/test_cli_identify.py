@@ -10,10 +10,14 @@ from typing import Any
 import numpy as np
 import pytest
 
+from benchmarks.accuracy import kuka
 from benchmarks.accuracy.joint import FULL_SCALE_NM, RATIO, Run, make_joint, simulate
+from benchmarks.accuracy.methods.interface import Log, Removal, Setting
 from benchmarks.accuracy.motion import LEARNING, constant_plan
 from benchmarks.accuracy.ripple import RIGHT
 from helpers.log_files import command, read_result, recording_path, write_parquet
+from strainwave import RippleFilter
+from strainwave.configuration import ripple_filter_of
 from strainwave.joint import read_joint
 
 Call = Any
@@ -140,6 +144,31 @@ def test_an_old_joint_file_is_kept_and_filled(tmp_path: Path, call: Call) -> Non
     assert ended.result["ratio"] == 100.0
 
 
+class _Identified:
+    """The ripple filter of a joint file, as a method of the bench."""
+
+    name = "identified"
+
+    def __init__(self, file: Path) -> None:
+        self._joint = read_joint(file).joint
+
+    def remove(self, log: Log, _setting: Setting, /) -> Removal:
+        gear = self._joint.gear
+        assert gear is not None
+        # The bench multiplies the output's angle by 160.
+        angle_rad = log.wave_angle_rad / kuka.RATIO * gear.ratio
+        cleaned = RippleFilter(ripple_filter_of(self._joint)).process(
+            log.time_s, angle_rad, log.torque_Nm
+        )
+        return Removal(cleaned.torque_Nm, cleaned.ripple_Nm)
+
+
+def _score(file: Path, folder: Path, number: int) -> tuple[float, float]:
+    method: Any = _Identified(file)
+    score = kuka.score_on_kuka(method, {}, kuka.read_kuka_joint(folder, number), number)
+    return score.attenuation_dB[0], score.injection_error_percent
+
+
 def test_kuka_without_a_ratio(tmp_path: Path, call: Call) -> None:
     source = recording_path("kuka-lbr-med7", "constant-speed-400hz.csv")
     header, *lines = source.read_text().splitlines()
@@ -158,6 +187,9 @@ def test_kuka_without_a_ratio(tmp_path: Path, call: Call) -> None:
         assert 0.02 < ended.result["ratio_standard_uncertainty"] < 0.6
         assert 2.0 in [each["order"] for each in ended.result["orders"]]
         assert "only the product of ratio and factor m" in ended.err
+        removed_dB, error_percent = _score(file, source.parent.parent, number)
+        assert 10.0 < removed_dB < 20.0
+        assert 0.5 < error_percent < 5.0
     assert call("filter", source, "--joint", file, "--out", tmp_path / "o.csv").code == 0
 
 

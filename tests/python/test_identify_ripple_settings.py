@@ -77,7 +77,7 @@ def test_a_ripple_that_swells_within_turns_has_a_short_memory() -> None:
 
 
 def test_a_short_recording_keeps_the_standard_and_few_turns_get_no_terms() -> None:
-    few_rows = _choose(_made(np.ones(900), 150.0 * np.arange(900) * 1e-3))
+    few_rows = _choose(_made(np.ones(450), 300.0 * np.arange(450) * 1e-3))
     assert (few_rows.is_chosen, few_rows.config.memory_turns) == (False, 10.0)
     at_rest = _choose(_made(np.ones(9000), np.zeros(9000)))
     assert not at_rest.is_chosen

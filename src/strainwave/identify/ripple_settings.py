@@ -34,7 +34,7 @@ TIE: Final = 1e-3
 LEAST_GAIN: Final = 0.006
 LEAST_GAIN_OF_A_COEFFICIENT: Final = 25.0
 #: Rows in motion and motor turns, below which the standard is kept; terms need more.
-LEAST_ROWS: Final = 1000
+LEAST_ROWS: Final = 500
 LEAST_TURNS: Final = 10.0
 LEAST_TURNS_FOR_TERMS: Final = 300.0
 DEGREES_OF_FREEDOM: Final = 4.0
