@@ -1,6 +1,6 @@
 """The Med7's recording: how much ripple goes, and how much of an injected contact goes with it.
 
-The protocol of algorithms.md 5. Joints 1 to 4, rows that only repeat a sample counted once, every
+Joints 1 to 4, rows that only repeat a sample counted once, every
 method run from the start of the file and judged at constant speed near its end. A known contact
 torque is added to the log; what the output does not show of it is the error. No reference torque is
 needed for either figure.

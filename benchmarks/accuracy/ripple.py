@@ -103,7 +103,7 @@ def draw_ripple(random: np.random.Generator, scenario: str) -> Ripple:
 
 #: Amplitudes linear in load and speed.
 RIGHT: Final = "right structure"
-#: Saturation, shifted phase, modulation, drift, order 1: the five deviations of algorithms.md 5.
+#: Saturation, shifted phase, modulation, drift, order 1: five ways in which gears depart from it.
 MISMATCH: Final = "mismatch"
 #: The same, growing with the load's magnitude, and with a waveform that is no sine.
 TEETH: Final = "mismatch, teeth"

@@ -52,7 +52,7 @@ def test_order_2_is_as_strong_as_was_found_before(joints):
 
 
 def test_raw_changes_nothing_and_ours_what_the_study_found(joints):
-    # algorithms.md 5, memory 2 turns: decibels, and the largest error that is allowed.
+    # An independent study, memory 2 turns: decibels, and the largest error that is allowed.
     limits = {1: (15.5, 4.0), 2: (19.1, 8.0), 3: (16.8, 4.0), 4: (19.3, 4.5)}
     for joint, (attenuation_dB, most_percent) in limits.items():
         raw = kuka.score_on_kuka(BY_NAME["raw"], {}, joints[joint], joint)

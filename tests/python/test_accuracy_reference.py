@@ -70,7 +70,7 @@ def test_the_core_is_the_reference_but_for_rounding(scenario, memory_turns):
 
 @pytest.mark.parametrize("rule", ["weighted", "jump"])
 def test_the_reference_reaches_the_figures_of_the_study(rule):
-    # algorithms.md 5: mean error 0.105 %FS at a noise floor of 0.10.
+    # An independent study: mean error 0.105 %FS at a noise floor of 0.10.
     run = simulate(make_joint(RIGHT, 1))
     log = log_of(run)
     settings = ReferenceSettings(TERMS, contact_rule=rule)

@@ -66,7 +66,7 @@ def config_of(
         torque_noise_Nm=setting.torque_noise_Nm,
         torque_walk_Nm_per_sqrt_s=setting.torque_noise_Nm
         * float(np.sqrt(1e3 * torque_walk_over_noise)),
-        # Five percent of full scale, as in algorithms.md.
+        # Five percent of full scale, the package's standard.
         initial_amplitude_Nm=0.05 * setting.rated_torque_Nm,
         rated_torque_Nm=setting.rated_torque_Nm,
     )
@@ -97,7 +97,7 @@ def remove(log: Log, setting: Setting, **tuning: Any) -> Removal:
 
 def _memories(*memories_turns: float) -> tuple[dict[str, Any], ...]:
     # One parameter: memory. The torque's walk is that of the package's standard, R per millisecond,
-    # the middle one of the three robots' of algorithms.md; the result hardly depends on it.
+    # the middle one of those that three robots chose; the result hardly depends on it.
     return tuple(
         {"memory_turns": memory, "torque_walk_over_noise": 1.0} for memory in memories_turns
     )

@@ -1,4 +1,4 @@
-"""The default ripple filter of algorithms.md 5, written down once more, plainly.
+"""The default ripple filter as first designed, written down once more, plainly.
 
 Dense matrices, one sample at a time, no tricks: it is the independent implementation that the core
 is tested against, and imports nothing of it.
@@ -41,11 +41,11 @@ class ReferenceSettings:
         Smoothed speed below which the coefficients rest.
     contact_rule : str
         What is done with an innovation beyond three scales. ``"weighted"``: the coefficients' gain
-        times limit / |e|, as in algorithms.md. ``"jump"``: it is taken for a jump of true torque,
+        times limit / |e|, as first designed. ``"jump"``: it is taken for a jump of true torque,
         whose variance is raised until the innovation is at the limit, as in the core; and what the
         coefficients may still be wrong by widens the limit. ``"none"``: nothing.
     scale_rate_per_rad : float
-        Rate of the innovations' tracked scale; 0.03 in algorithms.md.
+        Rate of the innovations' tracked scale; 0.03 as first designed.
     load_flattens : bool
         Whether the load terms' regressor is L / (1 + |L|), as in the core, and not L.
     variance_limited : bool
