@@ -136,9 +136,8 @@ struct RippleIntake {
   bool learnable = false;
   bool torque_usable = false;
   bool moving = false;
-  bool held_or_late = false;  ///< the row brought nothing new; its reading is the last one
-  Phase phase = {};           ///< that the torque belongs to
-  Real interval_s = Real(0);
+  bool held_or_late = false;    ///< the row brought nothing new; its reading is the last one
+  Phase phase = {};             ///< that the torque belongs to
   Real rotation_rad = Real(0);  ///< since the last sample that was learned from
   Real rest_Nm = Real(0);       ///< what is left for T: measured less expected less all ripple
   Real expected_torque_Nm = Real(0);
@@ -157,7 +156,7 @@ constexpr void add_time(Real& sum_s, Real interval_s) {
 /// Time and repetition: false where the row brings nothing new.
 template <class Real, std::size_t MaxPairs>
 constexpr bool take_time(RippleFilterState<Real, MaxPairs>& state, const RippleSample<Real>& sample,
-                         RippleIntake<Real, MaxPairs>& intake, RippleReading<Real>& reading) {
+                         RippleReading<Real>& reading) {
   if (!(absolute(sample.interval_s) <= static_cast<Real>(longest_interval_s))) {
     reading.status = mask(StatusFlag::time_not_finite);
     return false;
@@ -170,7 +169,6 @@ constexpr bool take_time(RippleFilterState<Real, MaxPairs>& state, const RippleS
     reading.status = mask(StatusFlag::sample_out_of_order);
     return false;
   }
-  intake.interval_s = sample.interval_s;
   add_time(state.time_since_phase_s, sample.interval_s);
   add_time(state.time_since_update_s, sample.interval_s);
   if (is_held(state, sample)) {
@@ -189,7 +187,7 @@ constexpr void take_in(const RippleFilterConfig<Real, MaxPairs>& config,
   reading.torque_all_removed_Nm = state.torque_all_Nm;
   reading.ripple_Nm = state.measured_Nm - state.torque_Nm;
   reading.torque_state_Nm = state.states_Nm[0];
-  intake.held_or_late = !take_time(state, sample, intake, reading);
+  intake.held_or_late = !take_time(state, sample, reading);
   if (intake.held_or_late) {
     return;
   }
