@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import get_args
+from typing import Final, get_args
 
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
@@ -22,6 +22,9 @@ from strainwave.joint.model import SECTION_MODELS, Identity, Joint
 from strainwave.joint.provenance import Provenance
 from strainwave.joint.signals import Column
 from strainwave.joint.units import BASE_UNITS, Quantity, allowed_units
+
+#: Quantities of tables that calibrations read, which have no column in `[signals]`.
+_NOT_IN_A_JOINT_FILE: Final = ("acceleration", "force", "number")
 
 
 def _default(field: FieldInfo) -> str:
@@ -96,6 +99,8 @@ def _columns() -> Iterator[str]:
     yield from _table("A column, such as `signals.torque`", Column)
     yield from ("| quantity | units of a column | computed in |", "|---|---|---|")
     for quantity in get_args(Quantity):
+        if quantity in _NOT_IN_A_JOINT_FILE:
+            continue
         units = ", ".join(allowed_units(quantity))
         yield f"| {quantity} | {units} | {BASE_UNITS[quantity]} |"
     yield ""

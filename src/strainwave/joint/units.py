@@ -7,7 +7,17 @@ import re
 from dataclasses import dataclass
 from typing import Literal
 
-Quantity = Literal["time", "angle", "speed", "torque", "voltage", "temperature"]
+Quantity = Literal[
+    "time",
+    "angle",
+    "speed",
+    "acceleration",
+    "torque",
+    "force",
+    "voltage",
+    "temperature",
+    "number",
+]
 
 _TURN_RAD = 2.0 * math.pi
 _FACTORS: dict[Quantity, dict[str, float]] = {
@@ -19,9 +29,16 @@ _FACTORS: dict[Quantity, dict[str, float]] = {
         "turn/s": _TURN_RAD,
         "turn/min": _TURN_RAD / 60.0,
     },
+    "acceleration": {
+        "rad/s^2": 1.0,
+        "deg/s^2": math.pi / 180.0,
+        "turn/s^2": _TURN_RAD,
+    },
     "torque": {"Nm": 1.0, "mNm": 1e-3},
+    "force": {"N": 1.0, "kN": 1e3},
     "voltage": {"V": 1.0, "mV": 1e-3, "uV": 1e-6},
     "temperature": {"degC": 1.0, "K": 1.0, "degF": 5.0 / 9.0},
+    "number": {"1": 1.0},
 }
 _OFFSETS = {"K": -273.15, "degF": -32.0 * 5.0 / 9.0}
 _PATTERNS: dict[Quantity, tuple[str, re.Pattern[str]]] = {
@@ -32,9 +49,12 @@ BASE_UNITS: dict[Quantity, str] = {
     "time": "s",
     "angle": "rad",
     "speed": "rad/s",
+    "acceleration": "rad/s^2",
     "torque": "Nm",
+    "force": "N",
     "voltage": "V",
     "temperature": "degC",
+    "number": "1",
 }
 """The unit in which strainwave computes with each quantity."""
 

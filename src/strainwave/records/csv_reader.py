@@ -139,6 +139,30 @@ class CsvRecording:
             yield RawChunk(batch.num_rows, values, time), min(1.0, position / size)
             first_row += batch.num_rows
 
+    def texts(self, column: FoundColumn, /) -> tuple[str, ...]:
+        """Read a whole column as it is written.
+
+        Parameters
+        ----------
+        column : FoundColumn
+            The column.
+
+        Returns
+        -------
+        tuple of str
+            A text for every row, without spaces around it; empty where there is none.
+
+        Raises
+        ------
+        InputError
+            If a line has too few or too many fields.
+        """
+        return tuple(
+            (text or "").strip()
+            for batch, _ in self._batches({"": column})
+            for text in batch.column(f"f{column.index}").to_pylist()
+        )
+
     def _batches(self, columns: Mapping[str, FoundColumn]) -> Iterator[tuple[pa.RecordBatch, int]]:
         wanted = sorted({f"f{column.index}" for column in columns.values()})
         try:

@@ -23,9 +23,9 @@ QUANTITIES: Final[dict[str, Quantity]] = {
 }
 """What can be mapped, and the quantity that decides on the units."""
 
+_EXAMPLE: Final = "--map time=t_s,angle=q:deg,torque=tau_Nm"
 _RESERVED = ',+:="'
 _QUOTED = re.compile(r'"((?:[^"]|"")*)"')
-_EXAMPLE = "--map time=t_s,angle=q:deg,torque=tau_Nm"
 
 
 @dataclass(frozen=True)
@@ -52,6 +52,29 @@ class MappedColumn:
     quoted: bool = field(default=False, compare=False)
 
 
+@dataclass(frozen=True)
+class MapKeys:
+    """What a command lets a person map.
+
+    Attributes
+    ----------
+    quantities : mapping
+        The quantity that decides on the units, by key; None where the column holds texts.
+    lists : frozenset of str
+        Keys that take several columns, written with plus signs between them.
+    example : str
+        A mapping that can be shown in a message.
+    """
+
+    quantities: Mapping[str, Quantity | None]
+    lists: frozenset[str] = frozenset()
+    example: str = _EXAMPLE
+
+
+LOG_KEYS: Final = MapKeys(QUANTITIES)
+"""The keys of a recording."""
+
+
 def parse_mapping(texts: Iterable[str]) -> dict[str, MappedColumn]:
     """Read what follows ``--map``: ``key=column[:unit]`` pairs by commas.
 
@@ -70,15 +93,39 @@ def parse_mapping(texts: Iterable[str]) -> dict[str, MappedColumn]:
     InputError
         If a pair cannot be read, or a key is unknown or given twice.
     """
-    mapping: dict[str, MappedColumn] = {}
+    return {key: columns[0] for key, columns in parse_columns(texts, LOG_KEYS).items()}
+
+
+def parse_columns(texts: Iterable[str], keys: MapKeys) -> dict[str, tuple[MappedColumn, ...]]:
+    """Read what follows ``--map`` where keys may have several columns.
+
+    Parameters
+    ----------
+    texts : iterable of str
+        The option's values, in order.
+    keys : MapKeys
+        What may be mapped.
+
+    Returns
+    -------
+    dict
+        Columns by key: one, or for a list as many as there are between plus signs. A unit after
+        the last one is that of all.
+
+    Raises
+    ------
+    InputError
+        If a pair cannot be read, or a key is unknown or given twice.
+    """
+    mapping: dict[str, tuple[MappedColumn, ...]] = {}
     for text in texts:
-        for key, column in _pairs(text):
+        for key, columns in _pairs(text, keys):
             if key in mapping:
                 raise InputError(
                     f"--map {text}: {key} is mapped twice; expected one column for each signal, so "
                     "remove one of them"
                 )
-            mapping[key] = column
+            mapping[key] = columns
     return mapping
 
 
@@ -106,37 +153,47 @@ def _format_column(column: MappedColumn) -> str:
     return f"{'-' if column.sign < 0 else ''}{name}:{column.unit}"
 
 
-def _pairs(text: str) -> Iterable[tuple[str, MappedColumn]]:
+def _pairs(text: str, keys: MapKeys) -> Iterable[tuple[str, tuple[MappedColumn, ...]]]:
     position = 0
     while True:
-        key, position = _read_key(text, position)
-        name, sign, quoted, position = _read_column(text, position, key)
-        unit, position = _read_unit(text, position, key)
-        yield key, MappedColumn(name, unit, sign, quoted)
+        key, position = _read_key(text, position, keys)
+        ends = ",:+" if key in keys.lists else ",:"
+        named = []
+        while True:
+            name, sign, quoted, position = _read_column(text, position, key, keys, ends)
+            named.append((name, sign, quoted))
+            if not text.startswith("+", position):
+                break
+            position += 1
+        unit, position = _read_unit(text, position, key, keys)
+        yield key, tuple(MappedColumn(name, unit, sign, quoted) for name, sign, quoted in named)
         if position == len(text):
             return
         position += 1
 
 
-def _read_key(text: str, start: int) -> tuple[str, int]:
+def _read_key(text: str, start: int, keys: MapKeys) -> tuple[str, int]:
     end = text.find("=", start)
     rest = text[start:]
     if end < 0 or "," in text[start:end]:
         raise InputError(
             f"--map {text}: {rest!r} is no pair; expected key=column pairs by commas, such as "
-            f"{_EXAMPLE}, so add the missing part"
+            f"{keys.example}, so add the missing part"
         )
     key = text[start:end].strip()
-    if key not in QUANTITIES:
-        near = difflib.get_close_matches(key, QUANTITIES, n=1)
+    if key not in keys.quantities:
+        near = difflib.get_close_matches(key, keys.quantities, n=1)
         advice = f"did you mean {near[0]}?" if near else "use one of these"
         raise InputError(
-            f"--map {text}: {key!r} is no signal; expected one of {', '.join(QUANTITIES)}; {advice}"
+            f"--map {text}: {key!r} is no signal; expected one of {', '.join(keys.quantities)}; "
+            f"{advice}"
         )
     return key, end + 1
 
 
-def _read_column(text: str, start: int, key: str) -> tuple[str, Literal[1, -1], bool, int]:
+def _read_column(
+    text: str, start: int, key: str, keys: MapKeys, ends: str
+) -> tuple[str, Literal[1, -1], bool, int]:
     while text[start : start + 1].isspace():
         start += 1
     sign: Literal[1, -1] = 1
@@ -152,7 +209,7 @@ def _read_column(text: str, start: int, key: str) -> tuple[str, Literal[1, -1], 
         name, end = match[1].replace('""', '"'), match.end()
         while text[end : end + 1].isspace():
             end += 1
-        if end < len(text) and text[end] not in ",:":
+        if end < len(text) and text[end] not in ends:
             raise InputError(
                 f"--map {text}: {text[end:]!r} follows the quoted column of {key}; expected a "
                 "comma, a colon with a unit, or the end"
@@ -162,7 +219,7 @@ def _read_column(text: str, start: int, key: str) -> tuple[str, Literal[1, -1], 
     while end < len(text) and text[end] not in _RESERVED:
         end += 1
     name = text[start:end].strip()
-    if end < len(text) and text[end] not in ",:":
+    if end < len(text) and text[end] not in ends:
         raise InputError(
             f"--map {text}: the column of {key} contains {text[end]!r}; a name with , + : = or a "
             "double quote in it is written in double quotes, such as --map 'torque=\"a,b\":mNm', "
@@ -171,18 +228,23 @@ def _read_column(text: str, start: int, key: str) -> tuple[str, Literal[1, -1], 
     if not name:
         raise InputError(
             f"--map {text}: no column follows {key}=; expected the name of a column, such as "
-            f"{_EXAMPLE}"
+            f"{keys.example}"
         )
     return name, sign, False, end
 
 
-def _read_unit(text: str, start: int, key: str) -> tuple[str, int]:
-    quantity = QUANTITIES[key]
+def _read_unit(text: str, start: int, key: str, keys: MapKeys) -> tuple[str, int]:
+    quantity = keys.quantities[key]
     if start == len(text) or text[start] == ",":
-        return BASE_UNITS[quantity], start
+        return "" if quantity is None else BASE_UNITS[quantity], start
     end = text.find(",", start)
     end = len(text) if end < 0 else end
     unit = text[start + 1 : end].strip()
+    if quantity is None:
+        raise InputError(
+            f"--map {text}: the unit {unit!r} follows the column of {key}, which holds texts; "
+            "expected no unit, so remove it; a column name with a colon is quoted"
+        )
     try:
         return check_unit(quantity, unit), end
     except ValueError as error:

@@ -113,6 +113,31 @@ class ParquetRecording:
         except _DAMAGED as error:
             raise self._unreadable(error) from error
 
+    def texts(self, column: FoundColumn, /) -> tuple[str, ...]:
+        """Read a whole column as text.
+
+        Parameters
+        ----------
+        column : FoundColumn
+            The column.
+
+        Returns
+        -------
+        tuple of str
+            A text for every row; empty where there is none. Whole numbers have no decimal point.
+
+        Raises
+        ------
+        InputError
+            If the file is damaged.
+        """
+        try:
+            with self._open() as file:
+                values = file.read(columns=None).column(column.index).to_pylist()
+        except _DAMAGED as error:
+            raise self._unreadable(error) from error
+        return tuple("" if value is None else str(value).strip() for value in values)
+
     def _check_type(self, key: str, column: FoundColumn) -> None:
         kind = self._schema.types[column.index]
         if pa.types.is_dictionary(kind):

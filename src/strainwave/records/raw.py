@@ -85,3 +85,18 @@ class Recording(Protocol):
             Consecutive rows, and the share of the recording that has been read, 0 to 1.
         """
         ...
+
+    def texts(self, column: FoundColumn, /) -> tuple[str, ...]:
+        """Read a whole column as it is written.
+
+        Parameters
+        ----------
+        column : FoundColumn
+            The column.
+
+        Returns
+        -------
+        tuple of str
+            A text for every row; empty where there is none.
+        """
+        ...
