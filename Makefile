@@ -70,7 +70,7 @@ lock: ## Make requirements.lock anew from requirements.in (UPGRADE=1: with the n
 # ---- what a person does -------------------------------------------------------------------------
 
 .PHONY: demo
-demo: $(VENV)/.package ## A simulated joint from gauges to a report, in demo/
+demo: $(VENV)/.package ## Both papers and the main job on simulated joints, in demo/
 	$(BIN)/strainwave demo --out demo
 
 .PHONY: docs-images

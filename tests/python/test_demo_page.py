@@ -44,7 +44,7 @@ def test_report_is_self_contained_and_complete(demo: DemoReport) -> None:
     page.feed(text)
     assert page.outside == []
     assert {link.removeprefix("#") for link in page.links} <= page.anchors
-    assert len(page.images) == 13
+    assert len(page.images) == 14
     assert all(image.get("alt") for image in page.images)
     for words in ("Table I", "figure 7", "Figure 8", "Figure 9", "Figure 10", "Figure 11"):
         assert words in text

@@ -12,7 +12,6 @@ from strainwave.reproduce import (
     taghirad1999_comparison,
 )
 from strainwave.reproduce.comparison import Comparison, tallies, tally_sentence, within
-from strainwave.reproduce.overview import overview
 from strainwave.reproduce.tuning import (
     FOUR_STATES,
     FOUR_STATES_SLOW,
@@ -221,18 +220,6 @@ def test_small_tuning_learns_new_ripple_with_the_time_constant_of_theory(order: 
     assert envelope[0] == pytest.approx(0.96, abs=0.03)
     assert -1 / slope == pytest.approx(SETTLING_S, rel=0.01)
     assert pytest.approx(0.4472, abs=1e-4) == SETTLING_S
-
-
-def test_overview_says_what_stays_what_goes_and_what_comes_back() -> None:
-    result = overview()
-    assert result.ripple_dB == pytest.approx(-31.4, abs=1.5)
-    assert result.contact_error_percent == pytest.approx(-0.5, abs=0.3)
-    assert result.returned_Nm == pytest.approx(1.05, abs=0.1)
-    # From the arrays, once more: output and truth over the contact's second half.
-    touched = (result.time_s >= 5.3) & (result.time_s < 5.6)
-    distance_Nm = result.clean_Nm[touched].mean() - result.true_Nm[touched].mean()
-    assert result.contact_error_percent == pytest.approx(100 * distance_Nm / 8.0, rel=1e-9)
-    assert result.true_Nm[touched].mean() == pytest.approx(8.8, abs=0.2)
 
 
 def test_comparison_can_be_missed_on_both_sides() -> None:

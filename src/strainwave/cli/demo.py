@@ -1,12 +1,19 @@
-"""`strainwave demo`: both papers on simulated stations, and a report of theirs beside ours."""
+"""`strainwave demo`: both papers on simulated stations, and the main job on a simulated joint."""
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from rich.table import Table
+
+    from strainwave.report.page import PlainTable
 
 
 def demo(*, out: Path = Path("demo"), json: bool = False) -> None:
-    """Run both papers' experiments on simulated stations and write an HTML report.
+    """Run both papers' experiments and the main job on simulated joints, and report on them.
 
     Example: strainwave demo --out demo
 
@@ -29,6 +36,7 @@ def demo(*, out: Path = Path("demo"), json: bool = False) -> None:
 
     from strainwave.cli.output import print_json, progress_console, result_console
     from strainwave.report.demo import STEPS, make_folder, write_demo
+    from strainwave.report.demo_main_job import main_job_table
     from strainwave.reproduce.comparison import tallies, tally_sentence
 
     make_folder(out)
@@ -59,6 +67,7 @@ def demo(*, out: Path = Path("demo"), json: bool = False) -> None:
                     for tally in tallies(finished.comparisons)
                 },
                 "comparisons": [entry.as_dict() for entry in finished.comparisons],
+                "main_job": [asdict(score) for score in finished.job.scores],
             }
         )
         return
@@ -79,6 +88,21 @@ def demo(*, out: Path = Path("demo"), json: bool = False) -> None:
     console.print(table)
     console.print(
         f"{agree} of {len(finished.comparisons)} numbers agree "
-        f"({tally_sentence(finished.comparisons)}); open {finished.page}",
+        f"({tally_sentence(finished.comparisons)})",
         soft_wrap=True,
     )
+    console.print(_job_table(main_job_table(finished.job)))
+    console.print(f"open {finished.page}", soft_wrap=True)
+
+
+def _job_table(table: PlainTable) -> Table:
+    from rich.table import Table
+
+    shown = Table(
+        title="The main job: one recording identified, another filtered (simulated joint)"
+    )
+    for heading in table.headings:
+        shown.add_column(heading, justify="left" if heading == table.headings[0] else "right")
+    for row in table.rows:
+        shown.add_row(*row)
+    return shown

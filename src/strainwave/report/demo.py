@@ -1,4 +1,4 @@
-"""The demo: both papers run, one page of theirs beside ours, and the picture for the README."""
+"""The demo: both papers run, theirs beside ours; then the main job, with the README's picture."""
 
 from __future__ import annotations
 
@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING, Final
 from strainwave.atomic import write_atomically
 from strainwave.errors import InputError
 from strainwave.report.demo_godler import godler_part
+from strainwave.report.demo_main_job import as_markdown, main_job_part, main_job_table
 from strainwave.report.demo_taghirad import taghirad_part
 from strainwave.report.demo_tuning import tuning_part
-from strainwave.report.figures_overview import before_and_after_figure
+from strainwave.report.figures_main_job import main_job_figure
 from strainwave.report.page import Item, Page, Part, PlainTable, Tile, all_comparisons, render
 from strainwave.report.style import svg
 from strainwave.reproduce import (
@@ -22,19 +23,20 @@ from strainwave.reproduce import (
     taghirad1999_comparison,
 )
 from strainwave.reproduce.comparison import KINDS, tallies
-from strainwave.reproduce.overview import overview
 from strainwave.reproduce.tuning import tuning_study
+from strainwave.walkthrough.main_job import main_job
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from strainwave.reproduce.comparison import Comparison
+    from strainwave.walkthrough.main_job import MainJob
 
 STEPS: Final = (
     "static calibration and free motion (Taghirad & Bélanger)",
     "two, four and three gauges (Godler et al.)",
     "what the published tuning does to true torque",
-    "before and after",
+    "the main job: identify one recording, filter another",
     "figures and page",
 )
 SIGNAL_FLOW: Final = (
@@ -54,11 +56,14 @@ class DemoReport:
         Torque before and after, as SVG.
     comparisons : tuple of Comparison
         Every published number beside ours.
+    job : MainJob
+        The main job; its recordings, joint file and clean torque are in the same folder.
     """
 
     page: Path
     picture: Path
     comparisons: tuple[Comparison, ...]
+    job: MainJob
 
 
 def make_folder(folder: Path) -> None:
@@ -122,23 +127,24 @@ def write_demo(
     tuning = tuning_study()
     on_done()
     on_step(next(steps))
-    before_and_after = overview()
+    job = main_job(folder)
     on_done()
     on_step(next(steps))
-    picture_text = svg(before_and_after_figure(before_and_after))
     parts = (
         taghirad_part(taghirad, taghirad1999_comparison.comparisons(taghirad)),
         tuning_part(tuning),
         godler_part(godler, godler2000_comparison.comparisons(godler)),
+        main_job_part(job),
     )
     compared = all_comparisons(parts)
     every = _every_number(compared)
     page = folder / "report.html"
     picture = folder / "before-and-after.svg"
     write_atomically(page, render(_page((*parts, every), compared)).encode())
-    write_atomically(picture, picture_text.encode())
+    write_atomically(picture, svg(main_job_figure(job)).encode())
+    write_atomically(folder / "main-job.md", as_markdown(main_job_table(job)).encode())
     on_done()
-    return DemoReport(page, picture, compared)
+    return DemoReport(page, picture, compared, job)
 
 
 def _every_number(compared: tuple[Comparison, ...]) -> Part:
