@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 import cyclopts
 
 if TYPE_CHECKING:
+    from strainwave.identify.torque_or_artefact import OrderVerdict
     from strainwave.records.identified_log import IdentifiedLog
 
 _LONGEST_COMMAND = 500
@@ -25,6 +26,7 @@ def identify_command(
     rated_torque: float | None = None,
     rate: float | None = None,
     joint: Path | None = None,
+    reference: Annotated[str | None, cyclopts.Parameter(allow_leading_hyphen=True)] = None,
     json: bool = False,
 ) -> None:
     """Find ratio, orders, delay, noise, memory and terms in a recording; write a joint file.
@@ -50,15 +52,19 @@ def identify_command(
         Rows a second, Hz, where the recording has no column of time.
     joint : Path
         A joint file to start from; what is not identified stays as it is there.
+    reference : str
+        Column of a reference torque sensor, as COLUMN[:UNIT]; decides which orders are torque.
     json : bool
         Print the result as JSON.
     """
     from strainwave.cli.output import print_json, progress_console, result_console
-    from strainwave.records import Options, parse_mapping, parse_ratio
+    from strainwave.records import Options, parse_ratio
     from strainwave.records.identifying import identify_log
+    from strainwave.records.reference_torque import parse_with_reference
 
+    mapping, reference_column = parse_with_reference(map_, reference)
     options = Options(
-        mapping=parse_mapping(map_),
+        mapping=mapping,
         angle_side=angle_side,
         ratio=None if ratio is None else parse_ratio(ratio),
         rated_torque_Nm=rated_torque,
@@ -70,6 +76,7 @@ def identify_command(
         "--rated-torque": rated_torque,
         "--rate": rate,
         "--joint": joint,
+        "--reference": reference,
         "--out": out,
     }
     words = ["strainwave", "identify", str(log)]
@@ -79,7 +86,14 @@ def identify_command(
         words += [] if value is None else [name, str(value)]
     command = shlex.join(words)
     usable = command.isprintable() and len(command) <= _LONGEST_COMMAND
-    result = identify_log(log, out, options, joint_path=joint, command=command if usable else None)
+    result = identify_log(
+        log,
+        out,
+        options,
+        joint_path=joint,
+        reference=reference_column,
+        command=command if usable else None,
+    )
     console = progress_console()
     for warning in result.warnings:
         console.print(f"strainwave: warning: {log}: {warning}", soft_wrap=True, markup=False)
@@ -129,7 +143,7 @@ def _table(result: IdentifiedLog) -> list[str]:
         row(
             f"order {order.order:g}",
             f"{measured_text(order.amplitude_Nm, order.amplitude_standard_uncertainty_Nm)} Nm, "
-            f"{phase}",
+            f"{phase}, {_decision_text(result.judged.of(order.order))}",
         )
     for each in ripple.output_cycles:
         row(
@@ -138,3 +152,12 @@ def _table(result: IdentifiedLog) -> list[str]:
             "not removed",
         )
     return lines
+
+
+def _decision_text(verdict: OrderVerdict) -> str:
+    from strainwave.records.identified_log import measured_text
+
+    if verdict.share is None:
+        return verdict.decision
+    share = measured_text(verdict.share.value, verdict.share.standard_uncertainty)
+    return f"torque's share {share} by {verdict.basis}: {verdict.decision}"

@@ -94,20 +94,18 @@ def find_orders(
         One for each candidate that the recording can show; empty where it is too short.
     """
     angle_rad = rows.angle_rad - delay_s * rows.speed_rad_s
-    turns = float(np.sum(np.abs(np.diff(angle_rad)))) / (2 * np.pi)
-    length = min(WINDOW_TURNS, max(LEAST_WINDOW_TURNS, turns / WISHED_WINDOWS))
-    windows = travel_windows(angle_rad, 2 * np.pi * length, 2 * (SLOW_DEGREE + 3))
+    windows = order_windows(angle_rad)
     amplitudes: dict[float, list[tuple[complex, float]]] = {order: [] for order in candidates}
     ratios: dict[float, list[float]] = {order: [] for order in candidates}
     between = sorted({order + side for order in candidates for side in (-0.5, 0.5)})
     used = 0
     for window in windows:
         angle, torque = angle_rad[window], rows.torque_Nm[window]
-        found = _fit(angle, torque, candidates, factor)
+        found = fit_orders(angle, torque, candidates, factor)
         used += len(angle) if found else 0
         for order, fitted in found.items():
             amplitudes[order].append(fitted)
-        everything = _fit(angle, torque, [*candidates, *between], factor)
+        everything = fit_orders(angle, torque, [*candidates, *between], factor)
         for order in candidates:
             if {order - 0.5, order, order + 0.5} <= everything.keys():
                 power = [abs(everything[order + side][0]) ** 2 for side in (-0.5, 0.0, 0.5)]
@@ -119,22 +117,82 @@ def find_orders(
     ]
 
 
-def _fit(
+def order_windows(angle_rad: NDArray[np.float64]) -> list[slice]:
+    """Cut rows into the windows of travel in which orders are measured.
+
+    Parameters
+    ----------
+    angle_rad : numpy.ndarray
+        Motor angles, shape (rows,), rad.
+
+    Returns
+    -------
+    list of slice
+        Windows of one direction each.
+    """
+    turns = float(np.sum(np.abs(np.diff(angle_rad)))) / (2 * np.pi)
+    length = min(WINDOW_TURNS, max(LEAST_WINDOW_TURNS, turns / WISHED_WINDOWS))
+    return travel_windows(angle_rad, 2 * np.pi * length, 2 * (SLOW_DEGREE + 3))
+
+
+def window_basis(
+    angle_rad: NDArray[np.float64], candidates: Sequence[float], factor: float
+) -> tuple[list[float], NDArray[np.float64]] | None:
+    """Build what a window's torque is made of: orders, and a polynomial of the angle.
+
+    Parameters
+    ----------
+    angle_rad : numpy.ndarray
+        Motor angles of a window, shape (rows,), rad.
+    candidates : sequence of float
+        Orders, cycles per turn of the wave.
+    factor : float
+        Turns of the wave per motor turn, m.
+
+    Returns
+    -------
+    tuple or None
+        The orders that the window can show, and columns: their cosines, their sines, and Chebyshev
+        polynomials up to `SLOW_DEGREE`. None where the window shows none.
+    """
+    per_row = float(np.quantile(np.abs(np.diff(angle_rad)), 0.9)) / (2 * np.pi)
+    visible = [order for order in candidates if order * factor * per_row < MOST_CYCLES_PER_ROW]
+    if not visible or len(angle_rad) < 2 * (2 * len(visible) + SLOW_DEGREE + 1):
+        return None
+    low, high = float(angle_rad.min()), float(angle_rad.max())
+    scaled = (2 * angle_rad - low - high) / (high - low)
+    turned = np.outer(factor * angle_rad, np.array(visible, float))
+    slow = np.polynomial.chebyshev.chebvander(scaled, SLOW_DEGREE)
+    return visible, np.column_stack([np.cos(turned), np.sin(turned), slow])
+
+
+def fit_orders(
     angle_rad: NDArray[np.float64],
     torque_Nm: NDArray[np.float64],
     candidates: Sequence[float],
     factor: float,
 ) -> dict[float, tuple[complex, float]]:
-    """Complex amplitude of each order that a window can show, and its variance."""
-    per_row = float(np.quantile(np.abs(np.diff(angle_rad)), 0.9)) / (2 * np.pi)
-    visible = [order for order in candidates if order * factor * per_row < MOST_CYCLES_PER_ROW]
-    if not visible or len(angle_rad) < 2 * (2 * len(visible) + SLOW_DEGREE + 1):
+    """Fit a window by least squares.
+
+    Parameters
+    ----------
+    angle_rad, torque_Nm : numpy.ndarray
+        Motor angles and torques of a window, shape (rows,), rad and Nm.
+    candidates : sequence of float
+        Orders, cycles per turn of the wave.
+    factor : float
+        Turns of the wave per motor turn, m.
+
+    Returns
+    -------
+    dict
+        By order, for those that the window can show: complex amplitude, Nm, of
+        exp(i x order x m x motor angle), and its variance, Nm^2, both components together.
+    """
+    built = window_basis(angle_rad, candidates, factor)
+    if built is None:
         return {}
-    low, high = float(angle_rad.min()), float(angle_rad.max())
-    scaled = (2 * angle_rad - low - high) / (high - low)
-    turned = np.outer(factor * angle_rad, np.array(visible, float))
-    slow = np.polynomial.chebyshev.chebvander(scaled, SLOW_DEGREE)
-    basis = np.column_stack([np.cos(turned), np.sin(turned), slow])
+    visible, basis = built
     solution, _, rank, _ = np.linalg.lstsq(basis, torque_Nm, rcond=None)
     if rank < basis.shape[1]:
         return {}

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from strainwave.identify.torque_or_artefact import UNDECIDABLE
 from strainwave.joint import build_section
+from strainwave.joint.ripple_filter import RippleFilter
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from strainwave.identify.recording import Ripple
+    from strainwave.identify.torque_or_artefact import TorqueOrArtefact
     from strainwave.joint import JointFile, Provenance
     from strainwave.joint.provenance import Section
     from strainwave.records.columns import FoundColumn
@@ -27,6 +30,7 @@ def fill_joint(
     columns: Mapping[str, Any],
     gearing: Gearing,
     ripple: Ripple,
+    judged: TorqueOrArtefact,
     provenance: Provenance,
 ) -> tuple[str, ...]:
     """Fill ``[gear]``, ``[signals]`` and ``[ripple_filter]``, each where enough is known.
@@ -45,6 +49,8 @@ def fill_joint(
         Ratio and factor m.
     ripple : Ripple
         Orders, delay, noise, memory, terms.
+    judged : TorqueOrArtefact
+        Which orders are torque.
     provenance : Provenance
         Of all three.
 
@@ -63,7 +69,9 @@ def fill_joint(
     signals = _signals(values, layout, survey, columns, ripple)
     sections["signals"] = build_section("signals", signals, _SOURCE)
     if ripple.settings is not None:
-        section = _ripple_filter(ripple, gearing, has_gear=has_gear)
+        old = joint.ripple_filter
+        kept = old.kept_orders if isinstance(old, RippleFilter) else ()
+        section = _ripple_filter(ripple, judged, gearing, kept, has_gear=has_gear)
         sections["ripple_filter"] = build_section("ripple_filter", section, _SOURCE)
     # A filter that is there names its orders by the gear: the new one takes its place at last.
     if "ripple_filter" in sections and joint.ripple_filter is not None:
@@ -158,7 +166,14 @@ def _signals(
     return values
 
 
-def _ripple_filter(ripple: Ripple, gearing: Gearing, *, has_gear: bool) -> dict[str, Any]:
+def _ripple_filter(
+    ripple: Ripple,
+    judged: TorqueOrArtefact,
+    gearing: Gearing,
+    once_kept: Sequence[float | str],
+    *,
+    has_gear: bool,
+) -> dict[str, Any]:
     assert ripple.settings is not None
     config = ripple.settings.config
     by_gear = has_gear and gearing.factor != 1
@@ -167,11 +182,19 @@ def _ripple_filter(ripple: Ripple, gearing: Gearing, *, has_gear: bool) -> dict[
         for each in ripple.present
     ]
     pairs = list(zip(names, config.orders, strict=True))
+    verdicts = [judged.of(each.order).decision for each in ripple.present]
+    # What this recording does not decide, an earlier one may have.
+    kept = [
+        name
+        for name, decision in zip(names, verdicts, strict=True)
+        if decision == "keep" or (decision == UNDECIDABLE and name in once_kept)
+    ]
     values: dict[str, Any] = {
         "method": "ripple",
         "orders": names,
         "load_orders": [name for name, order in pairs if order.with_load],
         "speed_orders": [name for name, order in pairs if order.with_speed],
+        "kept_orders": kept,
         "memory_turns": config.memory_turns,
         "torque_noise_Nm": config.torque_noise_Nm,
         "torque_walk_Nm_per_sqrt_s": config.torque_walk_Nm_per_sqrt_s,

@@ -10,7 +10,9 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from strainwave.identify.orders import FoundOrder
     from strainwave.identify.recording import Ripple
+    from strainwave.identify.torque_or_artefact import TorqueOrArtefact
     from strainwave.records.layout import Layout
     from strainwave.records.survey import Survey
 
@@ -80,6 +82,8 @@ class IdentifiedLog:
         Ratio and factor m.
     ripple : Ripple
         Orders, delay, noise, memory, terms.
+    judged : TorqueOrArtefact
+        Which orders are torque, and which are artefacts of sensing.
     sections : tuple of str
         Sections of the joint file that were filled.
     warnings : tuple of str
@@ -93,6 +97,7 @@ class IdentifiedLog:
     rated_torque_Nm: float
     gearing: Gearing
     ripple: Ripple
+    judged: TorqueOrArtefact
     sections: tuple[str, ...]
     warnings: tuple[str, ...]
 
@@ -120,16 +125,8 @@ class IdentifiedLog:
             ),
             "memory_turns": None if settings is None else settings.config.memory_turns,
             "noise_Nm": ripple.noise_Nm,
-            "orders": [
-                {
-                    "order": order.order,
-                    "amplitude_Nm": order.amplitude_Nm,
-                    "phase_rad": order.phase_rad,
-                    "amplitude_standard_uncertainty_Nm": order.amplitude_standard_uncertainty_Nm,
-                    "is_steady": order.is_steady,
-                }
-                for order in ripple.present
-            ],
+            "orders": [self._order_as_dict(order) for order in ripple.present],
+            "reference": self._reference_as_dict(),
             "cycles_per_output_turn": [
                 {
                     "cycles": each.cycles,
@@ -154,4 +151,39 @@ class IdentifiedLog:
             "motor_turns": ripple.motor_turns,
             "sections": list(self.sections),
             "warnings": list(self.warnings),
+        }
+
+    def _order_as_dict(self, order: FoundOrder) -> dict[str, Any]:
+        verdict = self.judged.of(order.order)
+        share = verdict.share
+        return {
+            "order": order.order,
+            "amplitude_Nm": order.amplitude_Nm,
+            "phase_rad": order.phase_rad,
+            "amplitude_standard_uncertainty_Nm": order.amplitude_standard_uncertainty_Nm,
+            "is_steady": order.is_steady,
+            "decision": verdict.decision,
+            "torque_share": None if share is None else share.value,
+            "torque_share_standard_uncertainty": (
+                None if share is None else share.standard_uncertainty
+            ),
+            "torque_Nm": verdict.torque_Nm,
+            "torque_standard_uncertainty_Nm": verdict.torque_standard_uncertainty_Nm,
+            "artefact_Nm": verdict.artefact_Nm,
+            "artefact_standard_uncertainty_Nm": verdict.artefact_standard_uncertainty_Nm,
+            "basis": verdict.basis,
+            "why_undecidable": verdict.reason or None,
+        }
+
+    def _reference_as_dict(self) -> dict[str, Any] | None:
+        found = self.judged.agreement
+        if found is None:
+            return None
+        return {
+            "gain": found.gain,
+            "gain_standard_uncertainty": found.gain_standard_uncertainty,
+            "delay_s": found.delay_s,
+            "delay_standard_uncertainty_s": found.delay_standard_uncertainty_s,
+            "lag_square_s2": found.lag_square_s2,
+            "lag_square_standard_uncertainty_s2": found.lag_square_standard_uncertainty_s2,
         }

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from strainwave.errors import InputError
+from strainwave.identify.judgement import judge_ripple
 from strainwave.identify.recording import identify_ripple
 from strainwave.joint import Provenance, new_joint, read_joint, write_joint
 from strainwave.records.checks import check_survey
@@ -22,12 +23,14 @@ from strainwave.records.method_setting import MOST_ROWS, read_excerpt
 from strainwave.records.opening import open_recording
 from strainwave.records.options import Options
 from strainwave.records.passes import Progress, sample_rows, survey_recording, untold
+from strainwave.records.reference_torque import read_reference_Nm
 from strainwave.records.survey import estimated_rated_torque_Nm
 
 if TYPE_CHECKING:
     from strainwave.joint import Joint
     from strainwave.records.columns import FoundColumn
     from strainwave.records.layout import Layout
+    from strainwave.records.mapping import MappedColumn
     from strainwave.records.raw import Recording
     from strainwave.records.survey import Survey
     from strainwave.samples import Samples
@@ -42,6 +45,7 @@ def identify_log(
     options: Options | None = None,
     *,
     joint_path: Path | None = None,
+    reference: MappedColumn | None = None,
     command: str | None = None,
     progress: Progress = untold,
 ) -> IdentifiedLog:
@@ -59,6 +63,8 @@ def identify_log(
         mapped beside ``angle``, the latter is the output's.
     joint_path : Path, optional
         A joint file to start from: sections that are not identified stay.
+    reference : MappedColumn, optional
+        The column of a reference torque sensor, by which orders are torque or artefact.
     command : str, optional
         The command line, for the provenance.
     progress : Progress
@@ -86,21 +92,28 @@ def identify_log(
     check_survey(recording.source, layout, reading.found, survey)
     rated_Nm = layout.rated_torque_Nm or estimated_rated_torque_Nm(survey)
     samples = read_excerpt(sample_rows(recording, layout, reading.found, survey))
+    reference_Nm = None
+    if reference is not None:
+        reference_Nm = read_reference_Nm(recording, layout, reference, len(samples))
     has_gear = gearing.ratio is not None and layout.rated_torque_Nm is not None
     ripple = identify_ripple(
         samples, gearing.factor, gearing.ratio, rated_Nm, may_have_load=has_gear
     )
+    judged = judge_ripple(samples, reference_Nm, ripple, float(gearing.factor), rated_Nm)
     provenance = Provenance.of_file(path, command=command)
-    sections = fill_joint(joint_file, layout, survey, columns, gearing, ripple, provenance)
+    sections = fill_joint(joint_file, layout, survey, columns, gearing, ripple, judged, provenance)
     # The file may be the one that was read, unless somebody has changed it since.
     write_joint(joint_file, out)
     warnings = (
         *warnings_of(layout, survey, rated_Nm),
         *gearing.says,
         *ripple.cannot_tell,
+        *judged.says,
         *_on_the_file(survey, gearing, has_gear=has_gear),
     )
-    return IdentifiedLog(path, out, layout, survey, rated_Nm, gearing, ripple, sections, warnings)
+    return IdentifiedLog(
+        path, out, layout, survey, rated_Nm, gearing, ripple, judged, sections, warnings
+    )
 
 
 @dataclass(frozen=True)

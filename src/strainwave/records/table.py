@@ -224,7 +224,7 @@ def _read_numbers(
 ) -> tuple[dict[tuple[str, int], NDArray[np.float64]], int]:
     if not found:
         return {}, 0
-    names = {"time" if key == "time" else f"{key}+{place}": (key, place) for key, place in found}
+    names = {f"{key}+{place}" if place else key: (key, place) for key, place in found}
     parts: dict[tuple[str, int], list[NDArray[np.float64]]] = {name: [] for name in found}
     rows = 0
     origin: float | int | None = None

@@ -1,0 +1,118 @@
+"""Complex amplitudes of the ripple's orders, window by window, with speed and load beside them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from strainwave.identify.orders import fit_orders
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
+
+    from strainwave.identify.moving_rows import MovingRows
+
+
+@dataclass(frozen=True)
+class OrderPhasors:
+    """One order in the windows that show it.
+
+    Attributes
+    ----------
+    window : numpy.ndarray
+        Numbers of the windows, shape (n,).
+    amplitude_Nm : numpy.ndarray
+        Complex amplitudes, shape (n,), Nm.
+    variance_Nm2 : numpy.ndarray
+        Their variances, both components together, shape (n,), Nm^2.
+    """
+
+    window: NDArray[np.int64]
+    amplitude_Nm: NDArray[np.complex128]
+    variance_Nm2: NDArray[np.float64]
+
+    def __len__(self) -> int:
+        return len(self.window)
+
+
+def phasors_of(
+    angle_rad: NDArray[np.float64],
+    torque_Nm: NDArray[np.float64],
+    windows: Sequence[slice],
+    candidates: Sequence[float],
+    factor: float,
+) -> dict[float, OrderPhasors]:
+    """Measure every order in every window.
+
+    Parameters
+    ----------
+    angle_rad, torque_Nm : numpy.ndarray
+        Motor angles and torques, shape (rows,), rad and Nm.
+    windows : sequence of slice
+        From `strainwave.identify.orders.order_windows`.
+    candidates : sequence of float
+        Orders, cycles per turn of the wave.
+    factor : float
+        Turns of the wave per motor turn, m.
+
+    Returns
+    -------
+    dict
+        By order.
+    """
+    found: dict[float, list[tuple[int, complex, float]]] = {order: [] for order in candidates}
+    for number, window in enumerate(windows):
+        fitted = fit_orders(angle_rad[window], torque_Nm[window], candidates, factor)
+        for order, (amplitude, variance) in fitted.items():
+            found[order].append((number, amplitude, variance))
+    return {
+        order: OrderPhasors(
+            np.array([each[0] for each in listed], np.int64),
+            np.array([each[1] for each in listed], np.complex128),
+            np.array([each[2] for each in listed], np.float64),
+        )
+        for order, listed in found.items()
+    }
+
+
+def window_speeds_rad_s(rows: MovingRows, windows: Sequence[slice]) -> NDArray[np.float64]:
+    """Give the high speed of every window.
+
+    Parameters
+    ----------
+    rows : MovingRows
+        The recording in motion, angles of the motor.
+    windows : sequence of slice
+        The windows.
+
+    Returns
+    -------
+    numpy.ndarray
+        The speed that a tenth of a window's rows exceed, shape (windows,), rad/s.
+    """
+    return np.array(
+        [float(np.quantile(np.abs(rows.speed_rad_s[window]), 0.9)) for window in windows]
+    )
+
+
+def block_sums(values: NDArray[np.float64], blocks: int) -> NDArray[np.float64]:
+    """Add up consecutive windows, so that what lasts longer than one is not taken for chance.
+
+    Parameters
+    ----------
+    values : numpy.ndarray
+        One value or row of values for each window, shape (windows, ...).
+    blocks : int
+        How many sums at most.
+
+    Returns
+    -------
+    numpy.ndarray
+        Shape (sums, ...).
+    """
+    parts = np.array_split(values, min(blocks, len(values)))
+    return np.array([np.sum(part, axis=0) for part in parts])
