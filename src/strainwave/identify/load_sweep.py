@@ -61,6 +61,7 @@ class _Windows:
 
     amplitude_Nm: NDArray[np.complex128]
     variance_Nm2: NDArray[np.float64]
+    noise_power_Nm2: NDArray[np.float64]
     load: NDArray[np.float64]
     speed_square: NDArray[np.float64]
     is_slow: NDArray[np.bool_]
@@ -74,6 +75,7 @@ class _Windows:
         return _Windows(
             self.amplitude_Nm[kept],
             self.variance_Nm2[kept],
+            self.noise_power_Nm2[kept],
             self.load[kept],
             self.speed_square[kept],
             self.is_slow[kept],
@@ -144,7 +146,9 @@ def _verdict(
         return OrderVerdict(order, UNDECIDABLE, reason=missing)
     slow = order * factor * speed / (2 * np.pi) <= SLOW_HZ
     square = (speed / float(np.max(speed))) ** 2
-    windows = _Windows(phasors.amplitude_Nm, phasors.variance_Nm2, load, square, slow)
+    windows = _Windows(
+        phasors.amplitude_Nm, phasors.variance_Nm2, phasors.noise_power_Nm2, load, square, slow
+    )
     inertial = _with_uncertainty(_inertial_share, windows, len(windows) - 3)
     if inertial is not None and inertial.interval[0] > EVEN_SHARE:
         return OrderVerdict(order, "keep", inertial, basis="load sweep")
@@ -213,7 +217,7 @@ def _fit(
 def _share_of(part_Nm: NDArray[np.complex128], windows: _Windows) -> float:
     weights = weights_of(windows.variance_Nm2)
     together = np.real(part_Nm * np.conj(windows.amplitude_Nm))
-    power = np.abs(windows.amplitude_Nm) ** 2 - windows.variance_Nm2
+    power = np.abs(windows.amplitude_Nm) ** 2 - windows.noise_power_Nm2
     whole = float(np.sum(weights * power))
     return float(np.sum(weights * together)) / whole if whole > 0.0 else float("nan")
 

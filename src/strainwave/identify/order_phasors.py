@@ -28,12 +28,17 @@ class OrderPhasors:
     amplitude_Nm : numpy.ndarray
         Complex amplitudes, shape (n,), Nm.
     variance_Nm2 : numpy.ndarray
-        Their variances, both components together, shape (n,), Nm^2.
+        Their variances, both components together, shape (n,), Nm^2, if what is left in a window is
+        white; good for weights.
+    noise_power_Nm2 : numpy.ndarray
+        Power half an order below and above, shape (n,), Nm^2: noise at the order's frequency, also
+        where contacts leave something in the window that is not white.
     """
 
     window: NDArray[np.int64]
     amplitude_Nm: NDArray[np.complex128]
     variance_Nm2: NDArray[np.float64]
+    noise_power_Nm2: NDArray[np.float64]
 
     def __len__(self) -> int:
         return len(self.window)
@@ -64,16 +69,24 @@ def phasors_of(
     dict
         By order.
     """
-    found: dict[float, list[tuple[int, complex, float]]] = {order: [] for order in candidates}
+    found: dict[float, list[tuple[int, complex, float, float]]]
+    found = {order: [] for order in candidates}
+    between = sorted({order + side for order in candidates for side in (-0.5, 0.5)})
     for number, window in enumerate(windows):
-        fitted = fit_orders(angle_rad[window], torque_Nm[window], candidates, factor)
+        rows = (angle_rad[window], torque_Nm[window])
+        fitted = fit_orders(*rows, candidates, factor)
+        beside = fit_orders(*rows, [*candidates, *between], factor)
         for order, (amplitude, variance) in fitted.items():
-            found[order].append((number, amplitude, variance))
+            sides = [order + side for side in (-0.5, 0.5)]
+            powers = [abs(beside[side][0]) ** 2 for side in sides if side in beside]
+            noise = float(np.mean(powers)) if len(powers) == len(sides) else variance
+            found[order].append((number, amplitude, variance, noise))
     return {
         order: OrderPhasors(
             np.array([each[0] for each in listed], np.int64),
             np.array([each[1] for each in listed], np.complex128),
             np.array([each[2] for each in listed], np.float64),
+            np.array([each[3] for each in listed], np.float64),
         )
         for order, listed in found.items()
     }

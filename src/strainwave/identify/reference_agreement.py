@@ -16,6 +16,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
+from scipy.ndimage import gaussian_filter1d
 from scipy.optimize import minimize
 from scipy.signal import lfilter
 
@@ -38,6 +39,8 @@ LEAST_VARIATION: Final = 100.0
 LEAST_WINDOWS: Final = 6
 #: Stretches of the recording whose disagreement makes the uncertainty.
 BLOCKS: Final = 20
+#: Standard deviation of the smoothing before signals are shifted, rows.
+SMOOTHING_ROWS: Final = 2.0
 #: A gain that is known no better than this is not known, relatively.
 LARGEST_GAIN_UNCERTAINTY: Final = 0.05
 
@@ -172,7 +175,9 @@ class _SlowFit:
         measured: Signal,
         reference: Signal,
     ) -> None:
-        self._measured, self._reference = measured, reference
+        # Both alike, so that nothing between them changes: between two rows a straight line has less
+        # noise than on them, and delays of half a row would be preferred.
+        self._measured, self._reference = _smoothed(measured), _smoothed(reference)
         self.period_s = float(np.median(np.diff(measured.time_s)))
         points = np.polynomial.chebyshev.chebpts1(SLOW_DEGREE + 1)
         values = np.polynomial.chebyshev.chebvander(points, SLOW_DEGREE)
@@ -193,7 +198,7 @@ class _SlowFit:
         self._edges = np.cumsum([0, *map(len, self._times)])
         self._time_s = np.concatenate([np.empty(0), *self._times])
         self.varies = len(self._slow) >= LEAST_WINDOWS and bool(
-            np.var(self._of(measured, 0.0, 0.0)) > LEAST_VARIATION * np.median(noise)
+            np.var(self._of(self._measured, 0.0, 0.0)) > LEAST_VARIATION * np.median(noise)
         )
 
     def _of(self, signal: Signal, after_s: float, lag_s: float) -> NDArray[np.float64]:
@@ -250,10 +255,17 @@ class _SlowFit:
         )
         scale = np.sqrt(np.mean(slopes**2, axis=(0, 1)))
         slopes = slopes / scale
-        bread = np.linalg.pinv(np.einsum("wpi,wpj->ij", slopes, slopes))
+        normal = block_sums(np.einsum("wpi,wpj->wij", slopes, slopes), BLOCKS)
         scores = block_sums(np.einsum("wpi,wp->wi", slopes, left), BLOCKS)
-        covariance = bread @ (scores.T @ scores) @ bread * len(scores) / (len(scores) - 1)
-        deviation = np.sqrt(np.diag(covariance)) / scale
+        # The jackknife: a few stretches, the contacts, may know all about delay and lag.
+        without = np.array(
+            [
+                np.linalg.pinv(normal.sum(axis=0) - each) @ score
+                for each, score in zip(normal, scores, strict=True)
+            ]
+        )
+        share = (len(scores) - 1) / len(scores)
+        deviation = np.sqrt(share * np.sum(without**2, axis=0)) / scale
         return Agreement(
             gain,
             float(deviation[0]),
@@ -262,3 +274,7 @@ class _SlowFit:
             square,
             float(deviation[3]),
         )
+
+
+def _smoothed(signal: Signal) -> Signal:
+    return Signal(signal.time_s, gaussian_filter1d(signal.torque_Nm, SMOOTHING_ROWS))

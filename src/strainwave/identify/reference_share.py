@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from strainwave.identify.moving_rows import MovingRows, moving_rows
-from strainwave.identify.order_phasors import OrderPhasors, phasors_of, window_speeds_rad_s
+from strainwave.identify.order_pair import OrderPair, pair_up, torque_share, with_amounts
+from strainwave.identify.order_phasors import phasors_of, window_speeds_rad_s
 from strainwave.identify.orders import order_windows
 from strainwave.identify.reference_agreement import Agreement, Signal, find_agreement
 from strainwave.identify.torque_or_artefact import (
@@ -16,12 +17,8 @@ from strainwave.identify.torque_or_artefact import (
     LEAST_WINDOWS,
     UNDECIDABLE,
     OrderVerdict,
-    Share,
     TorqueOrArtefact,
-    amplitude_of,
     decided,
-    share_of,
-    weights_of,
 )
 
 if TYPE_CHECKING:
@@ -122,7 +119,7 @@ def decide_by_reference(
     verdicts = tuple(
         _verdict(
             order,
-            _pair(
+            pair_up(
                 of_torque[order],
                 of_reference[order],
                 agreement.gain,
@@ -182,102 +179,30 @@ def _updates_Hz(material: _Material) -> float:
     return changes / moving_s
 
 
-@dataclass(frozen=True)
-class _Pair:
-    """One order in the windows that show it in both torques, at the measured torque's scale."""
-
-    frequency_Hz: NDArray[np.float64]
-    measured_Nm: NDArray[np.complex128]
-    measured_variance_Nm2: NDArray[np.float64]
-    torque_Nm: NDArray[np.complex128]
-    torque_variance_Nm2: NDArray[np.float64]
-
-    def __len__(self) -> int:
-        return len(self.frequency_Hz)
-
-    def of(self, chosen: NDArray[np.bool_]) -> _Pair:
-        """Give the chosen windows alone."""
-        return _Pair(
-            self.frequency_Hz[chosen],
-            self.measured_Nm[chosen],
-            self.measured_variance_Nm2[chosen],
-            self.torque_Nm[chosen],
-            self.torque_variance_Nm2[chosen],
-        )
-
-
-def _pair(
-    measured: OrderPhasors, reference: OrderPhasors, gain: float, frequency_Hz: NDArray[np.float64]
-) -> _Pair:
-    both = np.intersect1d(measured.window, reference.window)
-    in_torque = np.searchsorted(measured.window, both)
-    in_reference = np.searchsorted(reference.window, both)
-    return _Pair(
-        frequency_Hz[both],
-        measured.amplitude_Nm[in_torque],
-        measured.variance_Nm2[in_torque],
-        reference.amplitude_Nm[in_reference] / gain,
-        reference.variance_Nm2[in_reference] / gain**2,
-    )
-
-
-def _verdict(order: float, pair: _Pair, agreement: Agreement, updates_Hz: float) -> OrderVerdict:
+def _verdict(
+    order: float, pair: OrderPair, agreement: Agreement, updates_Hz: float
+) -> OrderVerdict:
     if len(pair) < LEAST_WINDOWS:
         reason = (
             f"only {len(pair)} windows of travel show it in both torques; record a longer motion"
         )
         return OrderVerdict(order, UNDECIDABLE, reason=reason)
-    share = _share(pair, agreement)
+    share = torque_share(pair, agreement)
     if share is not None and share.interval[0] > EVEN_SHARE:
         # A slow reference hides torque and makes none: what it shows is there.
-        return _with_amounts(decided(order, share, "reference"), pair, agreement)
+        return with_amounts(decided(order, share, "reference"), pair, agreement)
     lags_rad = np.array([agreement.phase_of_lag_rad(float(each))[1] for each in pair.frequency_Hz])
     fast = (lags_rad <= LARGEST_LAG_RAD) & (LEAST_UPDATES * pair.frequency_Hz <= updates_Hz)
     if np.count_nonzero(fast) < max(LEAST_WINDOWS, LEAST_FAST_SHARE * len(pair)):
         reason = _why_not_fast(agreement, float(np.median(pair.frequency_Hz)), updates_Hz)
         return OrderVerdict(order, UNDECIDABLE, reason=reason)
     pair = pair.of(fast)
-    share = _share(pair, agreement)
+    share = torque_share(pair, agreement)
     if share is None:
         reason = "it does not stand out of the noise where the reference is there; record more"
         return OrderVerdict(order, UNDECIDABLE, reason=reason)
     loss = float(np.sqrt(1.0 + np.max(lags_rad[fast]) ** 2))
-    return _with_amounts(decided(order, share, "reference", loss), pair, agreement)
-
-
-def _share(pair: _Pair, agreement: Agreement) -> Share | None:
-    weights = weights_of(pair.measured_variance_Nm2 + pair.torque_variance_Nm2)
-    power = np.abs(pair.measured_Nm) ** 2 - pair.measured_variance_Nm2
-    if float(np.sum(weights * power)) <= 0.0:
-        return None
-    share = share_of(pair.torque_Nm, pair.measured_Nm, pair.measured_variance_Nm2, weights)
-    # Gain and delay are common to all windows: their scatter does not show them.
-    of_gain = share.value * agreement.gain_standard_uncertainty / agreement.gain
-    turned = np.imag(pair.torque_Nm * np.conj(pair.measured_Nm)) * 2 * np.pi * pair.frequency_Hz
-    by_delay = float(np.sum(weights * turned) / np.sum(weights * power))
-    of_delay = by_delay * agreement.delay_standard_uncertainty_s
-    together = float(np.sqrt(share.standard_uncertainty**2 + of_gain**2 + of_delay**2))
-    return replace(share, standard_uncertainty=together)
-
-
-def _with_amounts(verdict: OrderVerdict, pair: _Pair, agreement: Agreement) -> OrderVerdict:
-    variance = pair.measured_variance_Nm2 + pair.torque_variance_Nm2
-    weights = weights_of(variance)
-    torque_Nm, scatter_Nm = amplitude_of(pair.torque_Nm, pair.torque_variance_Nm2, weights)
-    away_Nm = pair.measured_Nm - pair.torque_Nm
-    artefact_Nm, of_artefact_Nm = amplitude_of(away_Nm, variance, weights)
-    of_gain = agreement.gain_standard_uncertainty / agreement.gain
-    turn_rad_s = 2 * np.pi * float(np.sqrt(np.sum(weights * pair.frequency_Hz**2)))
-    turned = turn_rad_s * agreement.delay_standard_uncertainty_s
-    return replace(
-        verdict,
-        torque_Nm=torque_Nm,
-        torque_standard_uncertainty_Nm=float(np.hypot(scatter_Nm, of_gain * torque_Nm)),
-        artefact_Nm=artefact_Nm,
-        artefact_standard_uncertainty_Nm=float(
-            np.linalg.norm([of_artefact_Nm, of_gain * torque_Nm, turned * torque_Nm])
-        ),
-    )
+    return with_amounts(decided(order, share, "reference", loss), pair, agreement)
 
 
 def _why_not_fast(agreement: Agreement, frequency_Hz: float, updates_Hz: float) -> str:

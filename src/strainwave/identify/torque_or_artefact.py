@@ -165,7 +165,7 @@ def decided(order: float, share: Share, basis: Basis, largest_loss: float = 1.0)
 def share_of(
     part_Nm: NDArray[np.complex128],
     measured_Nm: NDArray[np.complex128],
-    variance_Nm2: NDArray[np.float64],
+    noise_power_Nm2: NDArray[np.float64],
     weights: NDArray[np.float64],
 ) -> Share:
     """Compute the share that one part has in an order, with the scatter of the windows.
@@ -174,9 +174,8 @@ def share_of(
     ----------
     part_Nm, measured_Nm : numpy.ndarray
         Complex amplitudes of the part and of the whole, shape (windows,), Nm.
-    variance_Nm2 : numpy.ndarray
-        Variance of `measured_Nm`, both components together, shape (windows,), Nm^2; noise has
-        power as well.
+    noise_power_Nm2 : numpy.ndarray
+        Power of the noise in `measured_Nm`, shape (windows,), Nm^2.
     weights : numpy.ndarray
         Weight of each window, shape (windows,).
 
@@ -186,7 +185,7 @@ def share_of(
         The share; without uncertainty of what is common to all windows.
     """
     together = np.real(part_Nm * np.conj(measured_Nm))
-    power = np.abs(measured_Nm) ** 2 - variance_Nm2
+    power = np.abs(measured_Nm) ** 2 - noise_power_Nm2
     whole = float(np.sum(weights * power))
     share = float(np.sum(weights * together)) / whole
     away = weights * (together - share * power)
@@ -216,7 +215,7 @@ def weights_of(variance_Nm2: NDArray[np.float64]) -> NDArray[np.float64]:
 
 def amplitude_of(
     amplitude_Nm: NDArray[np.complex128],
-    variance_Nm2: NDArray[np.float64],
+    noise_power_Nm2: NDArray[np.float64],
     weights: NDArray[np.float64],
 ) -> tuple[float, float]:
     """Compute a root mean square amplitude over windows, less its noise.
@@ -225,8 +224,8 @@ def amplitude_of(
     ----------
     amplitude_Nm : numpy.ndarray
         Complex amplitudes, shape (windows,), Nm.
-    variance_Nm2 : numpy.ndarray
-        Their variances, both components together, shape (windows,), Nm^2.
+    noise_power_Nm2 : numpy.ndarray
+        Power of the noise in them, shape (windows,), Nm^2.
     weights : numpy.ndarray
         Weight of each window, their sum 1.
 
@@ -235,7 +234,7 @@ def amplitude_of(
     tuple of float
         Amplitude, zero to peak, and its standard uncertainty, Nm.
     """
-    power = np.abs(amplitude_Nm) ** 2 - variance_Nm2
+    power = np.abs(amplitude_Nm) ** 2 - noise_power_Nm2
     mean = float(np.sum(weights * power))
     count = len(power)
     spread = float(np.sqrt(np.sum((weights * (power - mean)) ** 2) * count / (count - 1)))
