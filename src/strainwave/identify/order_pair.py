@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from strainwave.identify.order_phasors import noise_power_Nm2
 from strainwave.identify.torque_or_artefact import Share, amplitude_of, share_of, weights_of
 
 if TYPE_CHECKING:
@@ -29,16 +30,17 @@ class OrderPair:
         Complex amplitudes by the joint's own sensor and by the reference, shape (windows,), Nm.
     variance_Nm2 : numpy.ndarray
         Variance of both together, for weights, shape (windows,), Nm^2.
-    measured_noise_Nm2, torque_noise_Nm2 : numpy.ndarray
-        Power of the noise in each, shape (windows,), Nm^2.
+    measured_beside_Nm, torque_beside_Nm : numpy.ndarray
+        The same half an order below and above, shape (windows, 2), Nm: noise, of which contacts
+        bring the same into both.
     """
 
     frequency_Hz: NDArray[np.float64]
     measured_Nm: NDArray[np.complex128]
     torque_Nm: NDArray[np.complex128]
     variance_Nm2: NDArray[np.float64]
-    measured_noise_Nm2: NDArray[np.float64]
-    torque_noise_Nm2: NDArray[np.float64]
+    measured_beside_Nm: NDArray[np.complex128]
+    torque_beside_Nm: NDArray[np.complex128]
 
     def __len__(self) -> int:
         return len(self.frequency_Hz)
@@ -61,8 +63,8 @@ class OrderPair:
             self.measured_Nm[chosen],
             self.torque_Nm[chosen],
             self.variance_Nm2[chosen],
-            self.measured_noise_Nm2[chosen],
-            self.torque_noise_Nm2[chosen],
+            self.measured_beside_Nm[chosen],
+            self.torque_beside_Nm[chosen],
         )
 
 
@@ -93,8 +95,8 @@ def pair_up(
         measured.amplitude_Nm[own],
         reference.amplitude_Nm[other] / gain,
         measured.variance_Nm2[own] + reference.variance_Nm2[other] / gain**2,
-        measured.noise_power_Nm2[own],
-        reference.noise_power_Nm2[other] / gain**2,
+        measured.beside_Nm[own],
+        reference.beside_Nm[other] / gain,
     )
 
 
@@ -114,13 +116,17 @@ def torque_share(pair: OrderPair, agreement: Agreement) -> Share | None:
         None where the order does not stand out of the noise.
     """
     weights = weights_of(pair.variance_Nm2)
-    power = float(np.sum(weights * (np.abs(pair.measured_Nm) ** 2 - pair.measured_noise_Nm2)))
+    own, other = pair.measured_beside_Nm, pair.torque_beside_Nm
+    powers = np.abs(pair.measured_Nm) ** 2 - noise_power_Nm2(own, own, pair.variance_Nm2)
+    power = float(np.sum(weights * powers))
     if power <= 0.0:
         return None
-    share = share_of(pair.torque_Nm, pair.measured_Nm, pair.measured_noise_Nm2, weights)
+    product = pair.torque_Nm * np.conj(pair.measured_Nm)
+    common = np.real(product) - noise_power_Nm2(other, own, np.zeros(len(pair)))
+    share = share_of(common, powers, weights)
     # Gain and delay are common to all windows: their scatter does not show them.
     of_gain = share.value * agreement.gain_standard_uncertainty / agreement.gain
-    turned = np.imag(pair.torque_Nm * np.conj(pair.measured_Nm)) * 2 * np.pi * pair.frequency_Hz
+    turned = np.imag(product) * 2 * np.pi * pair.frequency_Hz
     of_delay = float(np.sum(weights * turned)) / power * agreement.delay_standard_uncertainty_s
     together = np.linalg.norm([share.standard_uncertainty, of_gain, of_delay])
     return replace(share, standard_uncertainty=float(together))
@@ -144,10 +150,11 @@ def with_amounts(verdict: OrderVerdict, pair: OrderPair, agreement: Agreement) -
         The same with amounts in Nm.
     """
     weights = weights_of(pair.variance_Nm2)
-    noise = pair.torque_noise_Nm2
+    own, other = pair.measured_beside_Nm, pair.torque_beside_Nm
+    noise = noise_power_Nm2(other, other, pair.variance_Nm2)
     torque_Nm, scatter_Nm = amplitude_of(pair.torque_Nm, noise, weights)
-    away_Nm = pair.measured_Nm - pair.torque_Nm
-    artefact_Nm, of_artefact_Nm = amplitude_of(away_Nm, noise + pair.measured_noise_Nm2, weights)
+    noise = noise_power_Nm2(own - other, own - other, pair.variance_Nm2)
+    artefact_Nm, of_artefact_Nm = amplitude_of(pair.measured_Nm - pair.torque_Nm, noise, weights)
     of_gain = agreement.gain_standard_uncertainty / agreement.gain
     turn_rad_s = 2 * np.pi * float(np.sqrt(np.sum(weights * pair.frequency_Hz**2)))
     turned = turn_rad_s * agreement.delay_standard_uncertainty_s

@@ -30,18 +30,47 @@ class OrderPhasors:
     variance_Nm2 : numpy.ndarray
         Their variances, both components together, shape (n,), Nm^2, if what is left in a window is
         white; good for weights.
-    noise_power_Nm2 : numpy.ndarray
-        Power half an order below and above, shape (n,), Nm^2: noise at the order's frequency, also
-        where contacts leave something in the window that is not white.
+    beside_Nm : numpy.ndarray
+        Complex amplitudes half an order below and above, shape (n, 2), Nm: noise near the order's
+        frequency, also where contacts leave something in the window that is not white. NaN where
+        the window does not show both.
     """
 
     window: NDArray[np.int64]
     amplitude_Nm: NDArray[np.complex128]
     variance_Nm2: NDArray[np.float64]
-    noise_power_Nm2: NDArray[np.float64]
+    beside_Nm: NDArray[np.complex128]
 
     def __len__(self) -> int:
         return len(self.window)
+
+    @property
+    def noise_power_Nm2(self) -> NDArray[np.float64]:
+        """Power of the noise in the amplitudes, shape (n,), Nm^2."""
+        return noise_power_Nm2(self.beside_Nm, self.beside_Nm, self.variance_Nm2)
+
+
+def noise_power_Nm2(
+    first_Nm: NDArray[np.complex128],
+    second_Nm: NDArray[np.complex128],
+    otherwise_Nm2: NDArray[np.float64],
+) -> NDArray[np.float64]:
+    """Compute the power that the noise of two signals has in common.
+
+    Parameters
+    ----------
+    first_Nm, second_Nm : numpy.ndarray
+        Complex amplitudes half an order below and above, shape (n, 2), Nm.
+    otherwise_Nm2 : numpy.ndarray
+        What is taken where there are none, shape (n,), Nm^2.
+
+    Returns
+    -------
+    numpy.ndarray
+        Shape (n,), Nm^2; of one signal with itself its noise.
+    """
+    power = np.mean(np.real(first_Nm * np.conj(second_Nm)), axis=1)
+    return np.where(np.isfinite(power), power, otherwise_Nm2)
 
 
 def phasors_of(
@@ -69,7 +98,7 @@ def phasors_of(
     dict
         By order.
     """
-    found: dict[float, list[tuple[int, complex, float, float]]]
+    found: dict[float, list[tuple[int, complex, float, list[complex]]]]
     found = {order: [] for order in candidates}
     between = sorted({order + side for order in candidates for side in (-0.5, 0.5)})
     for number, window in enumerate(windows):
@@ -78,15 +107,15 @@ def phasors_of(
         beside = fit_orders(*rows, [*candidates, *between], factor)
         for order, (amplitude, variance) in fitted.items():
             sides = [order + side for side in (-0.5, 0.5)]
-            powers = [abs(beside[side][0]) ** 2 for side in sides if side in beside]
-            noise = float(np.mean(powers)) if len(powers) == len(sides) else variance
+            shown = all(side in beside for side in sides)
+            noise = [beside[side][0] if shown else complex(np.nan) for side in sides]
             found[order].append((number, amplitude, variance, noise))
     return {
         order: OrderPhasors(
             np.array([each[0] for each in listed], np.int64),
             np.array([each[1] for each in listed], np.complex128),
             np.array([each[2] for each in listed], np.float64),
-            np.array([each[3] for each in listed], np.float64),
+            np.array([each[3] for each in listed], np.complex128).reshape(-1, 2),
         )
         for order, listed in found.items()
     }

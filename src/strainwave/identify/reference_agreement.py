@@ -32,6 +32,8 @@ if TYPE_CHECKING:
 
 #: Delays of the reference behind the measured torque that are looked at, s.
 DELAYS_S: Final = np.arange(-0.05, 0.2501, 0.002)
+#: Delays and lags beyond this are none of a torque sensor, s.
+LONGEST_S: Final = 0.3
 #: Lags from which the search for the best one starts, s.
 LAGS_S: Final = (0.0, 2e-3, -2e-3, 8e-3, -8e-3, 3e-2, 1e-1)
 #: Slow torque has to vary by this multiple of its own noise, as variances.
@@ -148,6 +150,7 @@ def find_agreement(
         lambda each: fit.cost(each[0], each[1]),
         (start_s, lag_s),
         method="Nelder-Mead",
+        bounds=[(-LONGEST_S, LONGEST_S)] * 2,
         options={
             "initial_simplex": simplex + np.array([start_s, lag_s]),
             "xatol": 1e-3 * step_s,
@@ -254,6 +257,7 @@ class _SlowFit:
             axis=-1,
         )
         scale = np.sqrt(np.mean(slopes**2, axis=(0, 1)))
+        scale = np.where(scale > 0.0, scale, 1.0)
         slopes = slopes / scale
         normal = block_sums(np.einsum("wpi,wpj->wij", slopes, slopes), BLOCKS)
         scores = block_sums(np.einsum("wpi,wp->wi", slopes, left), BLOCKS)

@@ -163,19 +163,17 @@ def decided(order: float, share: Share, basis: Basis, largest_loss: float = 1.0)
 
 
 def share_of(
-    part_Nm: NDArray[np.complex128],
-    measured_Nm: NDArray[np.complex128],
-    noise_power_Nm2: NDArray[np.float64],
-    weights: NDArray[np.float64],
+    common_Nm2: NDArray[np.float64], power_Nm2: NDArray[np.float64], weights: NDArray[np.float64]
 ) -> Share:
     """Compute the share that one part has in an order, with the scatter of the windows.
 
     Parameters
     ----------
-    part_Nm, measured_Nm : numpy.ndarray
-        Complex amplitudes of the part and of the whole, shape (windows,), Nm.
-    noise_power_Nm2 : numpy.ndarray
-        Power of the noise in `measured_Nm`, shape (windows,), Nm^2.
+    common_Nm2 : numpy.ndarray
+        Real part of the part's complex amplitude times the conjugate of the whole's, less what
+        noise makes of it, shape (windows,), Nm^2.
+    power_Nm2 : numpy.ndarray
+        Square of the whole's amplitude, less its noise, shape (windows,), Nm^2.
     weights : numpy.ndarray
         Weight of each window, shape (windows,).
 
@@ -184,12 +182,10 @@ def share_of(
     Share
         The share; without uncertainty of what is common to all windows.
     """
-    together = np.real(part_Nm * np.conj(measured_Nm))
-    power = np.abs(measured_Nm) ** 2 - noise_power_Nm2
-    whole = float(np.sum(weights * power))
-    share = float(np.sum(weights * together)) / whole
-    away = weights * (together - share * power)
-    count = len(measured_Nm)
+    whole = float(np.sum(weights * power_Nm2))
+    share = float(np.sum(weights * common_Nm2)) / whole
+    away = weights * (common_Nm2 - share * power_Nm2)
+    count = len(power_Nm2)
     variance = float(away @ away) * count / (count - 1) / whole**2
     return Share(share, float(np.sqrt(variance)), count - 1)
 

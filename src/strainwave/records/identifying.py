@@ -11,7 +11,10 @@ from typing import TYPE_CHECKING
 from strainwave.errors import InputError
 from strainwave.identify.judgement import judge_ripple
 from strainwave.identify.recording import identify_ripple
+from strainwave.identify.torque_or_artefact import UNDECIDABLE
 from strainwave.joint import Provenance, new_joint, read_joint, write_joint
+from strainwave.joint.orders import order_text
+from strainwave.joint.ripple_filter import RippleFilter
 from strainwave.records.checks import check_survey
 from strainwave.records.columns import find_columns
 from strainwave.records.findings import warnings_of
@@ -27,6 +30,8 @@ from strainwave.records.reference_torque import read_reference_Nm
 from strainwave.records.survey import estimated_rated_torque_Nm
 
 if TYPE_CHECKING:
+    from strainwave.identify.recording import Ripple
+    from strainwave.identify.torque_or_artefact import TorqueOrArtefact
     from strainwave.joint import Joint
     from strainwave.records.columns import FoundColumn
     from strainwave.records.layout import Layout
@@ -109,6 +114,7 @@ def identify_log(
         *gearing.says,
         *ripple.cannot_tell,
         *judged.says,
+        *_kept_as_before(joint_file.joint, ripple, judged),
         *_on_the_file(survey, gearing, has_gear=has_gear),
     )
     return IdentifiedLog(
@@ -193,6 +199,20 @@ def _on_the_file(survey: Survey, gearing: Gearing, *, has_gear: bool) -> tuple[s
             f"known: give --{missing.replace(' ', '-')}"
         )
     return tuple(says)
+
+
+def _kept_as_before(joint: Joint, ripple: Ripple, judged: TorqueOrArtefact) -> tuple[str, ...]:
+    section = joint.ripple_filter
+    if not ripple.present or not isinstance(section, RippleFilter):
+        return ()
+    kept = [
+        order_text(name)
+        for name, found in zip(section.orders, ripple.present, strict=True)
+        if name in section.kept_orders and judged.of(found.order).decision == UNDECIDABLE
+    ]
+    if not kept:
+        return ()
+    return (f"order {', '.join(kept)} stays kept, as the joint file has it",)
 
 
 def _check_out(out: Path, path: Path, joint_path: Path | None) -> None:
