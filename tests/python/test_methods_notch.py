@@ -124,3 +124,27 @@ def test_the_core_refuses_orders_and_arrays_that_do_not_fit():
     notch = _core.TrackingNotch(orders=[2], sample_period_s=1e-3)
     with pytest.raises(InputError, match="motor_angle_rad has 2 elements: expected 3"):
         notch.process(np.zeros(3), np.zeros(2))
+
+
+def test_kept_orders_pass():
+    section = {
+        "method": "ripple",
+        "orders": [2, 4],
+        "kept_orders": [4],
+        "memory_turns": 10.0,
+        "torque_noise_Nm": 0.04,
+        "torque_walk_Nm_per_sqrt_s": 1.0,
+        "provenance": PROVENANCE,
+    }
+    parts = {"joint": {"name": "elbow"}, "ripple_filter": section}
+    torque_Nm = noise()
+
+    def cleaned():
+        setting = Setting(1.0 / RATE_HZ, None, 40.0, Joint.model_validate(parts))
+        return build_method("notch", setting).process(recording(150.0, torque_Nm)).torque_Nm
+
+    expected_Nm = scipy_notches(torque_Nm, 150.0, (2,), 1.0)
+    np.testing.assert_allclose(cleaned(), expected_Nm, atol=1e-6)
+    section["kept_orders"] = [2, 4]
+    with pytest.raises(InputError, match="every order is in kept_orders"):
+        cleaned()

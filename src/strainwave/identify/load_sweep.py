@@ -176,7 +176,7 @@ def _missing(
 ) -> str:
     """Say what the recording lacks; nothing where load and speed change enough."""
     if len(speed_rad_s) < 2 * LEAST_WINDOWS:
-        return f"only {len(speed_rad_s)} windows of travel show it"
+        return f"only {len(speed_rad_s)} windows of travel show it, of {2 * LEAST_WINDOWS} needed"
     low, high = np.quantile(speed_rad_s, (0.05, 0.95))
     lowest, highest = np.quantile(load, (0.05, 0.95))
     lacks = []

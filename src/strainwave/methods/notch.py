@@ -12,6 +12,7 @@ import numpy as np
 from strainwave import _core
 from strainwave.arrays import contiguous
 from strainwave.configuration import oscillator_filter_of, ripple_filter_of
+from strainwave.errors import InputError
 from strainwave.methods.interface import Cleaned, nothing
 
 if TYPE_CHECKING:
@@ -89,11 +90,17 @@ class Notch:
 
 
 def notch_orders(setting: Setting) -> Sequence[Fraction | _core.Rational]:
-    """Take the orders of the joint file's filter, or else the gear's two strongest."""
+    """Take the orders that the joint file's filter removes, or else the gear's two strongest."""
     joint = setting.joint
     section = None if joint is None else joint.ripple_filter
     if joint is None or section is None:
         return [order * setting.wave_factor for order in STANDARD_ORDERS]
     if section.method == "ripple":
-        return [each.order for each in ripple_filter_of(joint).orders]
+        removed = [each.order for each in ripple_filter_of(joint).orders if not each.keep]
+        if not removed:
+            raise InputError(
+                "[ripple_filter]: every order is in kept_orders; expected one at least that the "
+                "notch removes, so take one out of kept_orders"
+            )
+        return removed
     return oscillator_filter_of(joint).orders
