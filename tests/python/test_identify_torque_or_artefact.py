@@ -175,6 +175,15 @@ def test_a_reference_of_something_else_is_said() -> None:
     assert "has too little in common" in judged.says[0]
 
 
+@pytest.mark.parametrize("value_Nm", [0.0, 3.0])
+def test_a_reference_that_never_changes_is_said(value_Nm: float) -> None:
+    run = reference_run(1, {})
+    constant = np.full(len(run.reference_Nm), value_Nm)
+    judged = decide_by_reference(run.samples, constant, ORDERS, CANDIDATES, WAVE_FACTOR, 0.0)
+    assert [each.decision for each in judged.verdicts] == [UNDECIDABLE] * 3
+    assert "check" in judged.says[0]
+
+
 def test_a_short_recording_decides_nothing() -> None:
     plan = (
         Segment(LEARNING, 0.3, 0.0),
