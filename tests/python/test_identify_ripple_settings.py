@@ -11,10 +11,11 @@ from benchmarks.accuracy.joint import FULL_SCALE_NM, make_joint, simulate
 from benchmarks.accuracy.motion import constant_plan
 from benchmarks.accuracy.ripple import MISMATCH, RIGHT
 from strainwave import RippleFilter, RippleFilterConfig, StatusFlag
+from strainwave.identify.likelihood import row_likelihoods
 from strainwave.identify.ripple_settings import (
     MEMORIES_TURNS,
     RippleSettings,
-    _likelihood,
+    Terms,
     choose_ripple_settings,
 )
 from strainwave.methods.registry import Setting, build_method
@@ -48,7 +49,7 @@ def _made(amplitude: np.ndarray, angle_rad: np.ndarray, seed: int = 4) -> Sample
 def test_load_and_speed_are_found_where_they_are(seed: int) -> None:
     found = _choose(_simulated(RIGHT, seed))
     assert found.is_chosen
-    assert (found.load_terms, found.speed_terms) == (True, True)
+    assert found.terms == Terms(load=True, speed=True)
     # With the right structure nothing is left that a short memory would have to follow.
     assert found.config.memory_turns >= 80.0
     assert [order.with_load for order in found.config.orders] == [True, True, False]
@@ -57,7 +58,7 @@ def test_load_and_speed_are_found_where_they_are(seed: int) -> None:
 @pytest.mark.parametrize("seed", [31, 32])
 def test_what_the_model_leaves_out_shortens_the_memory(seed: int) -> None:
     found = _choose(_simulated(MISMATCH, seed))
-    assert found.load_terms
+    assert found.terms.load
     assert found.config.memory_turns <= 20.0
 
 
@@ -65,7 +66,7 @@ def test_a_ripple_that_stays_has_no_terms_and_the_longest_memory() -> None:
     angle_rad = 120.0 * np.arange(40_000) * 1e-3
     found = _choose(_made(np.full(40_000, 1.5), angle_rad))
     assert found.is_chosen
-    assert (found.load_terms, found.speed_terms) == (False, False)
+    assert found.terms == Terms()
     assert found.config.memory_turns == max(MEMORIES_TURNS)
 
 
@@ -87,7 +88,7 @@ def test_a_short_recording_keeps_the_standard_and_few_turns_get_no_terms() -> No
     assert 100 < np.ptp(part.motor_angle_rad) / (2 * np.pi) < 300
     found = _choose(part)
     assert found.is_chosen
-    assert (found.load_terms, found.speed_terms) == (False, False)
+    assert found.terms == Terms()
 
 
 def test_the_likelihood_is_students() -> None:
@@ -108,14 +109,16 @@ def test_the_likelihood_is_students() -> None:
     best = scales[int(np.argmax(by_scale))]
     whole = np.mean(stats.t.logpdf(result.innovation_Nm[rows], 4, scale=best * deviations))
     constant = stats.t.logpdf(0.0, 4)
-    assert _likelihood(excerpt, config) == pytest.approx(whole - constant, abs=2e-3)
+    assert float(np.mean(row_likelihoods(excerpt, config))) == pytest.approx(
+        whole - constant, abs=2e-3
+    )
 
 
 @pytest.mark.parametrize("name", ["ripple", "smoother"])
 def test_a_method_chooses_on_the_excerpt_it_is_given(name: str) -> None:
     excerpt = _simulated(RIGHT, 35)
     method = build_method(name, Setting(1e-3, None, FULL_SCALE_NM, excerpt=excerpt))
-    assert method.settings.load_terms
+    assert method.settings.terms.load
     without = build_method(name, Setting(1e-3, None, FULL_SCALE_NM))
     assert not without.settings.is_chosen
     assert without.settings.config.memory_turns == 10.0

@@ -108,11 +108,9 @@ def _summary(result: FilteredLog) -> list[str]:
     ]
     settings = result.ripple_settings
     if settings is not None:
-        terms = [name for name in ("load", "speed") if getattr(settings, f"{name}_terms")]
         source = "chosen on the recording" if settings.is_chosen else "as told or standard"
         lines.append(
-            f"  memory {settings.config.memory_turns:g} motor turns, "
-            f"{' and '.join(terms) if terms else 'no load or speed'} terms: {source}"
+            f"  memory {settings.config.memory_turns:g} motor turns, {settings.terms}: {source}"
         )
     if result.ripple_rms_Nm is not None:
         lines.append(

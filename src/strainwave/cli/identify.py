@@ -10,6 +10,7 @@ import cyclopts
 
 if TYPE_CHECKING:
     from strainwave.identify.torque_or_artefact import OrderVerdict
+    from strainwave.identify.ripple_settings import RippleSettings
     from strainwave.records.identified_log import IdentifiedLog
 
 _LONGEST_COMMAND = 500
@@ -129,14 +130,18 @@ def _table(result: IdentifiedLog) -> list[str]:
         if delay is None
         else f"{measured_text(1e3 * delay.delay_s, 1e3 * delay.standard_uncertainty_s)} ms",
     )
-    row("noise", f"{ripple.noise_Nm:.3g} Nm")
+    noise = ripple.noise
+    spread_Nm = noise.standard_uncertainty_Nm
+    noise_text = (
+        f"{noise.noise_Nm:.3g}" if not spread_Nm else measured_text(noise.noise_Nm, spread_Nm)
+    )
+    known = {"rest": "at rest", "innovations": "an upper bound", "standard": "not told"}
+    row("noise", f"{noise_text} Nm, {known[noise.source]}")
     settings = ripple.settings
     if settings is not None:
-        terms = [name for name in ("load", "speed") if getattr(settings, f"{name}_terms")]
         row(
             "memory",
-            f"{settings.config.memory_turns:g} motor turns, "
-            f"{' and '.join(terms) if terms else 'no load or speed'} terms",
+            f"{settings.config.memory_turns:g} motor turns{_interval(settings)}, {settings.terms}",
         )
     for order in ripple.present:
         phase = f"phase {order.phase_rad:+.3f} rad" if order.is_steady else "phase wanders"
@@ -151,6 +156,12 @@ def _table(result: IdentifiedLog) -> list[str]:
             f"{measured_text(each.amplitude_Nm, each.amplitude_standard_uncertainty_Nm)} Nm, "
             "not removed",
         )
+    row("rate", _rate(result))
+    if result.survey.share_repeated:
+        row(
+            "held",
+            f"{result.survey.share_repeated:.1%} of the rows in motion repeat the one before",
+        )
     return lines
 
 
@@ -161,3 +172,24 @@ def _decision_text(verdict: OrderVerdict) -> str:
         return verdict.decision
     share = measured_text(verdict.share.value, verdict.share.standard_uncertainty)
     return f"torque's share {share} by {verdict.basis}: {verdict.decision}"
+
+
+def _interval(settings: RippleSettings) -> str:
+    interval = settings.memory_interval_turns
+    if interval is None:
+        return " (not told)"
+    return "" if interval[0] == interval[1] else f" ({interval[0]:g} to {interval[1]:g} do as well)"
+
+
+def _rate(result: IdentifiedLog) -> str:
+    from strainwave.records.identified_log import measured_text
+
+    timing = result.survey.timing
+    rate_Hz = timing.rate_Hz or 0.0
+    if not result.has_time:
+        return f"{rate_Hz:.7g} Hz as told"
+    shortest_s, longest_s = timing.smallest_interval_s or 0.0, timing.largest_interval_s or 0.0
+    return (
+        f"{measured_text(rate_Hz, timing.rate_standard_uncertainty_Hz or 0.0)} Hz, rows "
+        f"{1e3 * shortest_s:.4g} to {1e3 * longest_s:.4g} ms apart"
+    )

@@ -93,7 +93,7 @@ def travel_windows(
         The windows.
     """
     windows = []
-    ends = _turning_points(angle_rad, REVERSAL_SHARE * length_rad)
+    ends = turning_points(angle_rad, REVERSAL_SHARE * length_rad)
     for start, end in pairwise(ends):
         travelled = np.maximum.accumulate(np.abs(angle_rad[start : end + 1] - angle_rad[start]))
         count = int(travelled[-1] // length_rad)
@@ -104,8 +104,21 @@ def travel_windows(
     return windows
 
 
-def _turning_points(angle_rad: NDArray[np.float64], least_return_rad: float) -> list[int]:
-    """Give first row, reversals and last row; what comes back by less is no reversal."""
+def turning_points(angle_rad: NDArray[np.float64], least_return_rad: float) -> list[int]:
+    """Give first row, reversals and last row.
+
+    Parameters
+    ----------
+    angle_rad : numpy.ndarray
+        Angles, shape (rows,), rad.
+    least_return_rad : float
+        What comes back by less is no reversal.
+
+    Returns
+    -------
+    list of int
+        Numbers of rows, ascending.
+    """
     if not len(angle_rad):
         return [0]
     points = [0]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -17,9 +18,35 @@ REST_ROWS: Final = 50
 LEAST_DIFFERENCES: Final = 100
 #: Median of |x| of a standard normal variable, inverted.
 FROM_MEDIAN: Final = 1.4826
+#: Relative standard uncertainty of a deviation from the median of n magnitudes, times the root of
+#: n: 1.166 for independent normal values, more for differences, of which each shares a sample with
+#: the next.
+OF_INDEPENDENT: Final = 1.166
+OF_DIFFERENCES: Final = 1.28
+#: Stretches whose disagreement counts into the uncertainty.
+PARTS: Final = 8
 
 
-def rest_noise_Nm(samples: Samples) -> float | None:
+@dataclass(frozen=True)
+class Noise:
+    """Noise of one torque sample.
+
+    Attributes
+    ----------
+    noise_Nm : float
+        Standard deviation, Nm.
+    standard_uncertainty_Nm : float or None
+        Of that, Nm; None where nothing was measured.
+    source : str
+        "rest", "innovations" or "standard".
+    """
+
+    noise_Nm: float
+    standard_uncertainty_Nm: float | None
+    source: str
+
+
+def rest_noise(samples: Samples) -> Noise | None:
     """Estimate the standard deviation of a torque sample at rest, by the median of differences.
 
     Parameters
@@ -29,8 +56,8 @@ def rest_noise_Nm(samples: Samples) -> float | None:
 
     Returns
     -------
-    float or None
-        Nm; None where the motor is never at rest for long enough, or nothing changes there.
+    Noise or None
+        None where the motor is never at rest for long enough, or nothing changes there.
     """
     known = np.isfinite(samples.motor_angle_rad) & np.isfinite(samples.torque_Nm)
     known &= np.isfinite(samples.time_s)
@@ -45,19 +72,15 @@ def rest_noise_Nm(samples: Samples) -> float | None:
     half = REST_ROWS // 2
     rest[half : half + len(ends)] = ends
     steps = np.diff(torque)[rest[1:] & rest[:-1]]
-    return _deviation_Nm(steps[steps != 0.0])
-
-
-def _deviation_Nm(steps_Nm: NDArray[np.float64]) -> float | None:
-    if len(steps_Nm) < LEAST_DIFFERENCES:
+    steps = steps[steps != 0.0]
+    if len(steps) < LEAST_DIFFERENCES:
         return None
     # The difference of two samples has twice the variance of one.
-    deviation = FROM_MEDIAN * float(np.median(np.abs(steps_Nm))) / np.sqrt(2.0)
-    return float(deviation) if deviation > 0.0 else None
+    return _robust(steps / np.sqrt(2.0), OF_DIFFERENCES, "rest")
 
 
-def innovation_noise_Nm(innovation_Nm: NDArray[np.float64]) -> float:
-    """Robust standard deviation of innovations, an upper bound of the noise.
+def innovation_noise(innovation_Nm: NDArray[np.float64]) -> Noise | None:
+    """Take the robust standard deviation of innovations, an upper bound of the noise.
 
     Parameters
     ----------
@@ -66,7 +89,22 @@ def innovation_noise_Nm(innovation_Nm: NDArray[np.float64]) -> float:
 
     Returns
     -------
-    float
-        Nm.
+    Noise or None
+        None where there are none, or they are 0.
     """
-    return FROM_MEDIAN * float(np.median(np.abs(innovation_Nm)))
+    if not len(innovation_Nm):
+        return None
+    return _robust(innovation_Nm, OF_INDEPENDENT, "innovations")
+
+
+def _robust(values_Nm: NDArray[np.float64], relative: float, source: str) -> Noise | None:
+    noise_Nm = FROM_MEDIAN * float(np.median(np.abs(values_Nm)))
+    if not noise_Nm > 0.0:
+        return None
+    count = len(values_Nm)
+    deviation_Nm = relative * noise_Nm / np.sqrt(count)
+    if count >= PARTS:
+        parts = np.array_split(np.abs(values_Nm), PARTS)
+        medians = FROM_MEDIAN * np.array([float(np.median(part)) for part in parts])
+        deviation_Nm = max(deviation_Nm, float(np.std(medians, ddof=1)) / np.sqrt(PARTS))
+    return Noise(noise_Nm, float(deviation_Nm), source)

@@ -9,11 +9,12 @@ import numpy as np
 
 from strainwave import _core
 from strainwave.identify.delay import Delay, find_delay, speed_changes
+from strainwave.identify.likelihood import innovations
 from strainwave.identify.moving_rows import moving_rows
-from strainwave.identify.noise import innovation_noise_Nm, rest_noise_Nm
+from strainwave.identify.noise import Noise, innovation_noise, rest_noise
 from strainwave.identify.orders import find_orders
 from strainwave.identify.output_cycles import OutputCycles, find_output_cycles
-from strainwave.identify.ripple_settings import RippleSettings, choose_ripple_settings, innovations
+from strainwave.identify.ripple_settings import RippleSettings, choose_ripple_settings
 
 if TYPE_CHECKING:
     from fractions import Fraction
@@ -47,8 +48,8 @@ class Ripple:
         Every candidate that could be measured, present or not.
     delay : Delay or None
         None where the recording does not tell.
-    noise_Nm : float
-        Standard deviation of the noise of one sample, Nm.
+    noise : Noise
+        Noise of one sample, and where it comes from.
     settings : RippleSettings or None
         The filter; None where no order is there.
     output_cycles : tuple of OutputCycles
@@ -61,7 +62,7 @@ class Ripple:
 
     orders: tuple[FoundOrder, ...]
     delay: Delay | None
-    noise_Nm: float
+    noise: Noise
     settings: RippleSettings | None
     output_cycles: tuple[OutputCycles, ...]
     motor_turns: float
@@ -104,9 +105,10 @@ def identify_ripple(
     rows = moving_rows(excerpt.time_s, excerpt.motor_angle_rad, excerpt.torque_Nm)
     turns = float(np.sum(np.abs(np.diff(rows.angle_rad)))) / (2 * np.pi)
     says: list[str] = []
-    noise_Nm = rest_noise_Nm(excerpt)
+    at_rest = rest_noise(excerpt)
+    standard_noise_Nm = STANDARD_NOISE * rated_torque_Nm
     given: dict[str, Any] = {
-        "torque_noise_Nm": noise_Nm or STANDARD_NOISE * rated_torque_Nm,
+        "torque_noise_Nm": standard_noise_Nm if at_rest is None else at_rest.noise_Nm,
         "torque_walk_Nm_per_sqrt_s": WALK_PER_SQRT_S * rated_torque_Nm,
         "initial_amplitude_Nm": INITIAL_AMPLITUDE * rated_torque_Nm,
         "rated_torque_Nm": rated_torque_Nm,
@@ -119,12 +121,13 @@ def identify_ripple(
     if any(order.is_present for order in orders):
         lines = [wave * order.order for order in orders if order.is_present]
         delay = find_delay(excerpt, rows, lines, given)
-        delay = _usable(delay, excerpt)
-        if delay is not None:
+        why_not = _why_no_delay(delay, excerpt, changes=speed_changes(rows))
+        if delay is None or why_not:
+            delay = None
+            says.append(why_not)
+        else:
             orders = find_orders(rows, CANDIDATES, wave, delay.delay_s)
             given["angle_to_torque_delay_s"] = delay.delay_s
-        else:
-            says.append(_why_no_delay(speed_changes(rows)))
     elif turns < LEAST_TURNS:
         says.append(
             f"the motor makes {turns:.2g} turns, fewer than {LEAST_TURNS:g}: orders, delay and "
@@ -136,9 +139,9 @@ def identify_ripple(
             "defaults; check torque column, angle side and ratio, or record a longer motion"
         )
     present = [order for order in orders if order.is_present]
-    noise_Nm, source = _noise(noise_Nm, excerpt, [wave * order.order for order in present], given)
-    says += source
-    given["torque_noise_Nm"] = noise_Nm
+    noise = at_rest or _noise_in_motion(excerpt, [wave * order.order for order in present], given)
+    says += _on_the_noise(noise)
+    given["torque_noise_Nm"] = noise.noise_Nm
     settings = None
     if present:
         # The strongest first: they may have further terms.
@@ -155,52 +158,61 @@ def identify_ripple(
         if not settings.is_chosen:
             says.append(
                 f"the motor makes {turns:.3g} turns in {len(rows)} usable rows, too few to choose a "
-                f"memory: it is left at {STANDARD_MEMORY_TURNS:g} turns, without load or speed terms"
+                f"memory: it is left at {STANDARD_MEMORY_TURNS:g} turns, without terms in load, speed or direction; record a longer motion"
             )
     cycles = () if ratio is None else find_output_cycles(rows, ratio)
-    return Ripple(tuple(orders), delay, noise_Nm, settings, cycles, turns, tuple(says))
+    return Ripple(tuple(orders), delay, noise, settings, cycles, turns, tuple(says))
 
 
-def _usable(delay: Delay | None, excerpt: Samples) -> Delay | None:
-    steps_s = np.diff(excerpt.time_s)
-    period_s = float(np.median(steps_s[steps_s > 0.0]))
-    largest_s = LARGEST_DELAY_UNCERTAINTY_ROWS * period_s
-    if delay is None or delay.standard_uncertainty_s > largest_s:
-        return None
-    return delay
-
-
-def _why_no_delay(changes: bool) -> str:
-    if changes:
+def _why_no_delay(delay: Delay | None, excerpt: Samples, *, changes: bool) -> str:
+    """Say why the delay is left at 0; nothing where it is not."""
+    if not changes:
+        return (
+            "the motor's speed hardly changes: the delay between angle and torque cannot be told "
+            "from the ripple's phase and is left at 0; record a motion at two speeds or more"
+        )
+    if delay is None:
         return (
             "the delay between angle and torque does not show in this recording: it is left at 0; "
             "record a faster motion at several speeds"
         )
+    steps_s = np.diff(excerpt.time_s)
+    largest_s = LARGEST_DELAY_UNCERTAINTY_ROWS * float(np.median(steps_s[steps_s > 0.0]))
+    doubt = delay.doubt
+    if not doubt and delay.standard_uncertainty_s > largest_s:
+        doubt = f"it is known to no better than {1e3 * delay.standard_uncertainty_s:.2g} ms"
+    if not doubt:
+        return ""
     return (
-        "the motor's speed hardly changes: the delay between angle and torque cannot be told from "
-        "the ripple's phase and is left at 0; record a motion at two speeds or more"
+        f"the ripple fits a delay between angle and torque of {1e3 * delay.delay_s:.3g} ms best, but "
+        f"{doubt}: it is not trusted, and the delay is left at 0; record a longer and faster motion "
+        "at several speeds, in both directions"
     )
 
 
-def _noise(
-    at_rest_Nm: float | None, excerpt: Samples, orders: list[float], given: dict[str, Any]
-) -> tuple[float, list[str]]:
-    if at_rest_Nm is not None:
-        return at_rest_Nm, []
-    rest = "the motor is never at rest for long enough, or the torque does not change there: the "
+def _noise_in_motion(excerpt: Samples, orders: list[float], given: dict[str, Any]) -> Noise:
+    """Take the noise from the filter's innovations, or else leave it as it is given."""
     if orders:
         config = _core.RippleFilterConfig(
             orders=orders, memory_turns=STANDARD_MEMORY_TURNS, **given
         )
-        innovation_Nm = innovations(excerpt, config)
-        if len(innovation_Nm) and np.any(innovation_Nm != 0.0):
-            noise_Nm = innovation_noise_Nm(innovation_Nm)
-            if noise_Nm > 0.0:
-                return noise_Nm, [
-                    f"{rest}noise of {noise_Nm:.3g} Nm is that of the filter's innovations, an "
-                    "upper bound"
-                ]
-    noise_Nm = float(given["torque_noise_Nm"])
-    return noise_Nm, [
-        f"{rest}noise is left at {STANDARD_NOISE:.1%} of the rated torque, {noise_Nm:.3g} Nm"
-    ]
+        found = innovation_noise(innovations(excerpt, config).innovation_Nm)
+        if found is not None:
+            return found
+    return Noise(float(given["torque_noise_Nm"]), None, "standard")
+
+
+def _on_the_noise(noise: Noise) -> list[str]:
+    why = "the motor is never at rest for long enough, or the torque does not change there: the "
+    advice = "; record two seconds at rest as well"
+    if noise.source == "innovations":
+        return [
+            f"{why}noise of {noise.noise_Nm:.3g} Nm is that of the filter's innovations, an upper "
+            f"bound{advice}"
+        ]
+    if noise.source == "standard":
+        return [
+            f"{why}noise is left at {STANDARD_NOISE:.1%} of the rated torque, "
+            f"{noise.noise_Nm:.3g} Nm{advice}"
+        ]
+    return []

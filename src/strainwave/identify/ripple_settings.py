@@ -1,21 +1,23 @@
 """Memory and terms of the ripple filter from a recording, by the likelihood of its innovations.
 
-Candidates are run over the recording, and the one whose innovations are the most likely is taken:
-Student's t with four degrees of freedom and a free scale, because contacts are no noise, over rows
-in motion, the first eighth left out for learning. A longer memory and fewer terms do less to true
-torque; they are preferred unless there is clear evidence against them.
+Candidates are run over the recording, and the one whose innovations are the most likely is taken. A
+longer memory and fewer terms do less to true torque; they are preferred unless there is clear
+evidence against them.
+
+Terms in the direction of motion are looked at last. Between reversals they are constants like any
+other, so that only the rows after reversals tell whether the ripple differs by direction.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import numpy as np
-from scipy.optimize import minimize_scalar
 
 from strainwave import _core
-from strainwave.ripple_filter import RippleFilter
+from strainwave.identify.likelihood import block_sums, innovations, standardized_gain
+from strainwave.identify.reversals import Reversals, find_reversals
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -27,9 +29,14 @@ if TYPE_CHECKING:
 #: Memories that are tried, motor turns. Shorter ones follow more ripple and take more true torque;
 #: who wants one has to ask for it.
 MEMORIES_TURNS: Final = (160.0, 80.0, 40.0, 20.0, 10.0, 5.0, 3.0)
+#: Those with which terms in direction are looked at first.
+COARSE_MEMORIES_TURNS: Final = (80.0, 20.0)
 #: A longer memory is kept while the likelihood of a row falls by no more than this (a ratio's
 #: logarithm) behind the best.
 TIE: Final = 1e-3
+#: A memory is not told from the best one where their likelihoods differ by no more than so many
+#: standard uncertainties of the difference.
+COVERAGE: Final = 2.0
 #: Terms have to gain this much per row, and so much per coefficient over all rows.
 LEAST_GAIN: Final = 0.006
 LEAST_GAIN_OF_A_COEFFICIENT: Final = 25.0
@@ -37,11 +44,35 @@ LEAST_GAIN_OF_A_COEFFICIENT: Final = 25.0
 LEAST_ROWS: Final = 500
 LEAST_TURNS: Final = 10.0
 LEAST_TURNS_FOR_TERMS: Final = 300.0
-DEGREES_OF_FREEDOM: Final = 4.0
-#: Share of the rows in motion that is left for learning.
-LEARNING_SHARE: Final = 1 / 8
 #: Share of the rows in motion, at the end, on which terms must hold good by themselves.
 HELD_OUT_SHARE: Final = 1 / 3
+#: Motor turns in each direction and reversals, below which no terms in direction are tried.
+LEAST_TURNS_EACH_WAY: Final = 50.0
+LEAST_REVERSALS: Final = 3
+#: They have to gain this much after reversals, all together.
+LEAST_GAIN_AFTER_REVERSALS: Final = 50.0
+#: Of what terms in direction gain after reversals, none may lose more than this share, and the best
+#: one may bring no more than this share.
+LARGEST_LOSS_SHARE: Final = 0.05
+LARGEST_SHARE: Final = 0.5
+
+
+class Terms(NamedTuple):
+    """What the modulated orders' ripple depends on.
+
+    Attributes
+    ----------
+    load, speed, direction : bool
+        Whether there is a pair of coefficients for it.
+    """
+
+    load: bool = False
+    speed: bool = False
+    direction: bool = False
+
+    def __str__(self) -> str:
+        names = [name for name, has in self._asdict().items() if has]
+        return f"{' and '.join(names) if names else 'no load, speed or direction'} terms"
 
 
 @dataclass(frozen=True)
@@ -52,16 +83,87 @@ class RippleSettings:
     ----------
     config : RippleFilterConfig
         The configuration.
-    load_terms, speed_terms : bool
-        Whether the modulated orders have them.
+    terms : Terms
+        Those that the modulated orders have.
     is_chosen : bool
         False where the recording is too short to choose on: the standard was kept.
+    memory_interval_turns : tuple of float or None
+        Shortest and longest of the tried memories that the recording does not tell from the best
+        one; None where none was chosen.
     """
 
     config: _core.RippleFilterConfig
-    load_terms: bool
-    speed_terms: bool
+    terms: Terms
     is_chosen: bool
+    memory_interval_turns: tuple[float, float] | None = None
+
+
+@dataclass(frozen=True)
+class _Run:
+    """One candidate's likelihood, row by row."""
+
+    memory_turns: float
+    rows: NDArray[np.intp]
+    likelihoods: NDArray[np.float64]
+
+    @property
+    def mean(self) -> float:
+        return float(np.mean(self.likelihoods))
+
+    @property
+    def held_out_mean(self) -> float:
+        first = int((1.0 - HELD_OUT_SHARE) * len(self.likelihoods))
+        return float(np.mean(self.likelihoods[first:]))
+
+    def over(self, other: _Run) -> tuple[NDArray[np.intp], NDArray[np.float64]]:
+        """Rows that both have, and what each of them gains."""
+        rows, mine, others = np.intersect1d(
+            self.rows, other.rows, assume_unique=True, return_indices=True
+        )
+        return rows, self.likelihoods[mine] - other.likelihoods[others]
+
+
+class _Search:
+    """Candidates on one recording."""
+
+    def __init__(
+        self,
+        excerpt: Samples,
+        orders: Sequence[Any],
+        modulated: Sequence[Any],
+        given: Mapping[str, Any],
+    ) -> None:
+        self._excerpt = excerpt
+        self._orders = orders
+        self._modulated = modulated
+        self._given = {**given, "reference_speed_rad_s": _typical_speed_rad_s(excerpt)}
+
+    def config(self, memory_turns: float, terms: Terms) -> _core.RippleFilterConfig:
+        return _core.RippleFilterConfig(
+            orders=[
+                _core.RippleOrder(
+                    order,
+                    with_load=terms.load and order in self._modulated,
+                    with_speed=terms.speed and order in self._modulated,
+                    with_direction=terms.direction and order in self._modulated,
+                )
+                for order in self._orders
+            ],
+            memory_turns=memory_turns,
+            **self._given,
+        )
+
+    def run(self, memory_turns: float, terms: Terms) -> _Run:
+        found = innovations(self._excerpt, self.config(memory_turns, terms))
+        return _Run(memory_turns, found.rows, found.likelihoods())
+
+    def memories(self, terms: Terms, memories_turns: Sequence[float]) -> list[_Run]:
+        return [self.run(memory_turns, terms) for memory_turns in memories_turns]
+
+    def cost(self, terms: Terms, rows: int) -> float:
+        """Give what the terms have to gain per row."""
+        coefficients = 2 * len(self._modulated) * sum(terms)
+        return LEAST_GAIN * any(terms) + LEAST_GAIN_OF_A_COEFFICIENT * coefficients / rows
 
 
 def choose_ripple_settings(
@@ -82,7 +184,7 @@ def choose_ripple_settings(
     orders : sequence
         Orders to remove, cycles per motor turn.
     modulated : sequence
-        Those of them that may have load and speed terms.
+        Those of them that may have load, speed and direction terms.
     standard_memory_turns : float
         Memory where the recording is too short to choose.
     given : mapping
@@ -95,52 +197,105 @@ def choose_ripple_settings(
     RippleSettings
         The choice.
     """
-
-    def config(memory_turns: float, terms: tuple[bool, bool]) -> _core.RippleFilterConfig:
-        return _core.RippleFilterConfig(
-            orders=[
-                _core.RippleOrder(
-                    order,
-                    with_load=terms[0] and order in modulated,
-                    with_speed=terms[1] and order in modulated,
-                )
-                for order in orders
-            ],
-            memory_turns=memory_turns,
-            **given,
-        )
-
-    none = (False, False)
-    standard = config(standard_memory_turns, none)
-    given = {**given, "reference_speed_rad_s": _typical_speed_rad_s(excerpt)}
-    rows, turns = _motion(excerpt, standard)
+    search = _Search(excerpt, orders, modulated, given)
+    standard = _core.RippleFilterConfig(
+        orders=list(orders), memory_turns=standard_memory_turns, **given
+    )
+    rows = len(innovations(excerpt, standard).rows)
+    turns = float(np.nansum(np.abs(np.diff(excerpt.motor_angle_rad))) / (2 * np.pi))
     if rows < LEAST_ROWS or turns < LEAST_TURNS:
-        return RippleSettings(standard, *none, is_chosen=False)
+        return RippleSettings(standard, Terms(), is_chosen=False)
     enough = turns >= LEAST_TURNS_FOR_TERMS
-    every = (none, (True, False), (False, True), (True, True)) if enough else (none,)
-    tried = [terms for terms in every if may_have_load or not terms[0]]
-    best: tuple[float, float, tuple[bool, bool]] | None = None
-    plain_held_out = -np.inf
+    further = [Terms(load=True), Terms(speed=True), Terms(load=True, speed=True)]
+    tried = [terms for terms in further if enough and (may_have_load or not terms.load)]
+    terms, runs = _without_direction(search, tried)
+    reversals = find_reversals(excerpt.motor_angle_rad)
+    if enough and _shows_direction(reversals):
+        terms, runs = _with_direction(search, [Terms(), *tried], terms, runs, reversals)
+    chosen = _longest_of_the_best(runs)
+    return RippleSettings(
+        search.config(chosen.memory_turns, terms),
+        terms,
+        is_chosen=True,
+        memory_interval_turns=_memory_interval_turns(runs),
+    )
+
+
+def _without_direction(search: _Search, tried: Sequence[Terms]) -> tuple[Terms, list[_Run]]:
+    """Choose load and speed terms; with the runs of every memory."""
+    best_terms, best_runs = Terms(), search.memories(Terms(), MEMORIES_TURNS)
+    plain_held_out = _longest_of_the_best(best_runs).held_out_mean
+    best_score = max(run.mean for run in best_runs)
     for terms in tried:
-        scores = [_likelihood(excerpt, config(memory, terms)) for memory in MEMORIES_TURNS]
-        memory_turns = next(
-            memory
-            for memory, score in zip(MEMORIES_TURNS, scores, strict=True)
-            if score >= max(scores) - TIE
-        )
-        coefficients = 2 * len(modulated) * sum(terms)
-        cost = LEAST_GAIN * any(terms) + LEAST_GAIN_OF_A_COEFFICIENT * coefficients / rows
-        if best is None:
-            plain_held_out = _likelihood(excerpt, config(memory_turns, terms), HELD_OUT_SHARE)
-            best = (max(scores) - cost, memory_turns, terms)
-        elif (
-            max(scores) - cost > best[0]
-            and _likelihood(excerpt, config(memory_turns, terms), HELD_OUT_SHARE) > plain_held_out
-        ):
-            best = (max(scores) - cost, memory_turns, terms)
+        runs = search.memories(terms, MEMORIES_TURNS)
+        score = max(run.mean for run in runs) - search.cost(terms, len(runs[0].rows))
+        held_out = _longest_of_the_best(runs).held_out_mean
+        if score > best_score and held_out > plain_held_out:
+            best_score, best_terms, best_runs = score, terms, runs
+    return best_terms, best_runs
+
+
+def _shows_direction(reversals: Reversals) -> bool:
+    each_way = min(reversals.turns_forward, reversals.turns_backward)
+    return reversals.count >= LEAST_REVERSALS and each_way >= LEAST_TURNS_EACH_WAY
+
+
+def _with_direction(
+    search: _Search,
+    tried: Sequence[Terms],
+    terms: Terms,
+    runs: list[_Run],
+    reversals: Reversals,
+) -> tuple[Terms, list[_Run]]:
+    """Take direction terms where they gain: on the whole, on the last rows, and after reversals."""
+    without = _longest_of_the_best(runs)
+    best: tuple[float, Terms] | None = None
+    # All again: ripple that differs by direction hides what follows load and speed, or looks so.
+    for candidate in tried:
+        with_direction = candidate._replace(direction=True)
+        for memory_turns in {without.memory_turns, *COARSE_MEMORIES_TURNS}:
+            run = search.run(memory_turns, with_direction)
+            score = run.mean - search.cost(with_direction, len(run.rows))
+            if best is None or score > best[0]:
+                best = score, with_direction
     assert best is not None
-    _, memory_turns, terms = best
-    return RippleSettings(config(memory_turns, terms), *terms, is_chosen=True)
+    score, with_direction = best
+    if score <= without.mean - search.cost(terms, len(without.rows)):
+        return terms, runs
+    runs_with = search.memories(with_direction, MEMORIES_TURNS)
+    chosen = _longest_of_the_best(runs_with)
+    held_good = chosen.held_out_mean > without.held_out_mean
+    if held_good and _gains_after_reversals(reversals.sums_after(*chosen.over(without))):
+        return with_direction, runs_with
+    return terms, runs
+
+
+def _gains_after_reversals(gains: NDArray[np.float64]) -> bool:
+    """Tell whether a gain is clear, and that of more than one reversal."""
+    if len(gains) < LEAST_REVERSALS - 1:
+        return False
+    total = float(np.sum(gains))
+    return (
+        total >= LEAST_GAIN_AFTER_REVERSALS
+        and float(np.min(gains)) >= -LARGEST_LOSS_SHARE * total
+        and float(np.max(gains)) <= LARGEST_SHARE * total
+    )
+
+
+def _longest_of_the_best(runs: list[_Run]) -> _Run:
+    best = max(run.mean for run in runs)
+    return next(run for run in runs if run.mean >= best - TIE)
+
+
+def _memory_interval_turns(runs: list[_Run]) -> tuple[float, float]:
+    best = max(runs, key=lambda run: run.mean)
+
+    def is_as_good(run: _Run) -> bool:
+        loss = block_sums(best.over(run)[1])
+        return run.mean >= best.mean - TIE or standardized_gain(loss) <= COVERAGE
+
+    good = [run.memory_turns for run in runs if is_as_good(run)]
+    return min(good), max(good)
 
 
 def _typical_speed_rad_s(excerpt: Samples) -> float:
@@ -149,89 +304,3 @@ def _typical_speed_rad_s(excerpt: Samples) -> float:
         speed_rad_s = np.abs(np.diff(excerpt.motor_angle_rad) / np.diff(excerpt.time_s))
     speed_rad_s = speed_rad_s[np.isfinite(speed_rad_s)]
     return float(np.clip(np.quantile(speed_rad_s, 0.95), 1.0, 1e4)) if len(speed_rad_s) else 1.0
-
-
-def _motion(excerpt: Samples, config: _core.RippleFilterConfig) -> tuple[int, float]:
-    """Rows that the filter learns from in motion, and motor turns."""
-    variance = _run(excerpt, config)[1]
-    turned = np.abs(np.diff(excerpt.motor_angle_rad))
-    return len(variance), float(np.nansum(turned) / (2 * np.pi))
-
-
-def _run(
-    excerpt: Samples, config: _core.RippleFilterConfig
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Innovations in motion, and their variances, after the time for learning."""
-    result = RippleFilter(config).process(
-        excerpt.time_s,
-        excerpt.motor_angle_rad,
-        excerpt.torque_Nm,
-        expected_torque_Nm=excerpt.expected_torque_Nm,
-    )
-    at_rest = (result.status & np.uint32(_core.StatusFlag.at_rest.value)) != 0
-    rows = np.flatnonzero((result.innovation_variance_Nm2 > 0) & ~at_rest)
-    rows = rows[int(LEARNING_SHARE * len(rows)) :]
-    return result.innovation_Nm[rows], result.innovation_variance_Nm2[rows]
-
-
-def _likelihood(
-    excerpt: Samples, config: _core.RippleFilterConfig, last_share: float = 1.0
-) -> float:
-    """Mean logarithm of a row's likelihood, up to a constant, the scale profiled out."""
-    innovation_Nm, variance_Nm2 = _run(excerpt, config)
-    first = int((1.0 - last_share) * len(innovation_Nm))
-    return _likelihood_of(innovation_Nm[first:], variance_Nm2[first:])
-
-
-def _likelihood_of(innovation_Nm: NDArray[np.float64], variance_Nm2: NDArray[np.float64]) -> float:
-    return float(np.mean(_row_likelihoods(innovation_Nm, variance_Nm2)))
-
-
-def _row_likelihoods(
-    innovation_Nm: NDArray[np.float64], variance_Nm2: NDArray[np.float64]
-) -> NDArray[np.float64]:
-    squares = innovation_Nm**2 / variance_Nm2 / DEGREES_OF_FREEDOM
-    slope = 0.5 * (DEGREES_OF_FREEDOM + 1)
-
-    def cost(log_scale: float) -> float:
-        return slope * float(np.mean(np.log1p(squares * np.exp(-log_scale)))) + 0.5 * log_scale
-
-    log_scale = float(minimize_scalar(cost, bounds=(-20.0, 20.0), method="bounded").x)
-    likelihoods: NDArray[np.float64] = -slope * np.log1p(squares * np.exp(-log_scale))
-    return likelihoods - 0.5 * (log_scale + np.log(variance_Nm2))
-
-
-def row_likelihoods(excerpt: Samples, config: _core.RippleFilterConfig) -> NDArray[np.float64]:
-    """Compute how likely each row's innovation is.
-
-    Parameters
-    ----------
-    excerpt : Samples
-        Rows of the recording.
-    config : RippleFilterConfig
-        The filter.
-
-    Returns
-    -------
-    numpy.ndarray
-        Logarithm of the likelihood of each row in motion after learning, up to a constant.
-    """
-    return _row_likelihoods(*_run(excerpt, config))
-
-
-def innovations(excerpt: Samples, config: _core.RippleFilterConfig) -> NDArray[np.float64]:
-    """Give a recording's innovations.
-
-    Parameters
-    ----------
-    excerpt : Samples
-        Rows of the recording.
-    config : RippleFilterConfig
-        The filter.
-
-    Returns
-    -------
-    numpy.ndarray
-        Of the rows in motion after learning, Nm.
-    """
-    return _run(excerpt, config)[0]

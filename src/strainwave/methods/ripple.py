@@ -8,7 +8,7 @@ import numpy as np
 
 from strainwave import _core
 from strainwave.configuration import learned_of, ripple_filter_of
-from strainwave.identify.ripple_settings import RippleSettings, choose_ripple_settings
+from strainwave.identify.ripple_settings import RippleSettings, Terms, choose_ripple_settings
 from strainwave.methods.interface import Cleaned, nothing
 from strainwave.ripple_filter import RippleFilter
 from strainwave.samples import Samples
@@ -58,12 +58,12 @@ def ripple_settings(setting: Setting) -> RippleSettings:
     joint = _joint_with_section(setting)
     if joint is not None:
         config = ripple_filter_of(joint)
-        return RippleSettings(
-            config,
+        terms = Terms(
             any(order.with_load for order in config.orders),
             any(order.with_speed for order in config.orders),
-            is_chosen=False,
+            any(order.with_direction for order in config.orders),
         )
+        return RippleSettings(config, terms, is_chosen=False)
     rated = setting.rated_torque_Nm
     orders = [order * setting.wave_factor for order in STANDARD_ORDERS]
     given: dict[str, Any] = {
@@ -76,7 +76,7 @@ def ripple_settings(setting: Setting) -> RippleSettings:
         config = _core.RippleFilterConfig(
             orders=orders, memory_turns=STANDARD_MEMORY_TURNS, **given
         )
-        return RippleSettings(config, load_terms=False, speed_terms=False, is_chosen=False)
+        return RippleSettings(config, Terms(), is_chosen=False)
     return choose_ripple_settings(
         setting.excerpt, orders, orders[:MODULATED_ORDERS], STANDARD_MEMORY_TURNS, given
     )
@@ -190,7 +190,21 @@ def learned_at_the_start(
     )
     at_rest = np.uint32(_core.StatusFlag.at_rest.value)
     moved = np.any((result.innovation_variance_Nm2 > 0) & ((result.status & at_rest) == 0))
-    return backward_filter.learned() if moved else None
+    return _turned_round(backward_filter.learned()) if moved else None
+
+
+def _turned_round(learned: _core.LearnedRipple) -> _core.LearnedRipple:
+    """Backwards in time every motion has the other direction: so have the pairs that follow it."""
+    signs: list[float] = []
+    for order in learned.orders:
+        pairs = 1 + order.with_load + order.with_speed
+        signs += [1.0] * (2 * pairs) + [-1.0] * (2 * order.with_direction)
+    return _core.LearnedRipple(
+        orders=learned.orders,
+        coefficients_Nm=np.array(signs) * learned.coefficients_Nm,
+        standard_deviations_Nm=learned.standard_deviations_Nm,
+        innovation_scale_Nm=learned.innovation_scale_Nm,
+    )
 
 
 def _joint_with_section(setting: Setting) -> Joint | None:

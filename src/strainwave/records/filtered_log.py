@@ -117,6 +117,9 @@ class FilteredLog:
             "orders": [_value(each.order) for each in config.orders],
             "load_orders": [_value(each.order) for each in config.orders if each.with_load],
             "speed_orders": [_value(each.order) for each in config.orders if each.with_speed],
+            "direction_orders": [
+                _value(each.order) for each in config.orders if each.with_direction
+            ],
             "memory_turns": config.memory_turns,
             "angle_to_torque_delay_s": config.angle_to_torque_delay_s,
             "chosen_by_likelihood": settings.is_chosen,

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING
 from strainwave.errors import InputError
 from strainwave.identify.moving_rows import moving_rows
 from strainwave.identify.ratio import (
+    HIGHEST_CYCLES,
+    LOWEST_CYCLES,
     FoundRatio,
     output_line,
     ratio_of_angles,
@@ -50,14 +52,17 @@ def gearing_of_output(source: str, samples: Samples, told: Fraction | None) -> G
     line = output_line(rows, told)
     if line is None and told is None:
         raise InputError(
-            f"{source}: no line of the ripple stands out against the output's angle; expected "
-            "--ratio N, or a recording that moves further, so give the ratio"
+            f"{source}: no line of the ripple stands out against the output's angle; expected order "
+            f"2 at {LOWEST_CYCLES:g} to {HIGHEST_CYCLES:g} cycles per output turn, as ratios of "
+            f"{LOWEST_CYCLES / 2:g} to {HIGHEST_CYCLES / 2:g} have it, so give the ratio with --ratio "
+            "N, or record a longer motion"
         )
     if line is None:
         assert told is not None
         says = (
             "the ripple shows no clear line near the ratio that was given: "
-            f"{float(told):g} is kept, and not measured; record a longer motion",
+            f"{float(told):g} is kept, and not measured, and m is taken as 1; check the ratio, or "
+            "record a longer motion",
         )
         return Gearing(told, None, Fraction(1), "told", says=says)
     found = ratio_of_line(line, told)

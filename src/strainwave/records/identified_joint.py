@@ -194,12 +194,13 @@ def _ripple_filter(
         "orders": names,
         "load_orders": [name for name, order in pairs if order.with_load],
         "speed_orders": [name for name, order in pairs if order.with_speed],
+        "direction_orders": [name for name, order in pairs if order.with_direction],
         "kept_orders": kept,
         "memory_turns": config.memory_turns,
         "torque_noise_Nm": config.torque_noise_Nm,
         "torque_walk_Nm_per_sqrt_s": config.torque_walk_Nm_per_sqrt_s,
         "initial_amplitude_Nm": config.initial_amplitude_Nm,
     }
-    if ripple.settings.speed_terms:
+    if ripple.settings.terms.speed:
         values["reference_speed_rad_s"] = config.reference_speed_rad_s
     return values

@@ -12,6 +12,7 @@ if TYPE_CHECKING:
 
     from strainwave.identify.orders import FoundOrder
     from strainwave.identify.recording import Ripple
+    from strainwave.identify.ripple_settings import RippleSettings
     from strainwave.identify.torque_or_artefact import TorqueOrArtefact
     from strainwave.records.layout import Layout
     from strainwave.records.survey import Survey
@@ -101,6 +102,11 @@ class IdentifiedLog:
     sections: tuple[str, ...]
     warnings: tuple[str, ...]
 
+    @property
+    def has_time(self) -> bool:
+        """Whether the rate follows from time stamps; else it was given."""
+        return "time" in self.layout.columns
+
     def as_dict(self) -> dict[str, Any]:
         """Plain values by name, for `--json`.
 
@@ -124,7 +130,10 @@ class IdentifiedLog:
                 None if delay is None else delay.standard_uncertainty_s
             ),
             "memory_turns": None if settings is None else settings.config.memory_turns,
+            "memory_interval_turns": _listed(settings),
             "noise_Nm": ripple.noise_Nm,
+            "noise_standard_uncertainty_Nm": ripple.noise.standard_uncertainty_Nm,
+            "noise_source": ripple.noise.source,
             "orders": [self._order_as_dict(order) for order in ripple.present],
             "reference": self._reference_as_dict(),
             "cycles_per_output_turn": [
@@ -132,18 +141,22 @@ class IdentifiedLog:
                     "cycles": each.cycles,
                     "amplitude_Nm": each.amplitude_Nm,
                     "amplitude_standard_uncertainty_Nm": each.amplitude_standard_uncertainty_Nm,
+                    "evidence": each.evidence,
                 }
                 for each in ripple.output_cycles
             ],
             "terms": {
-                "load": settings is not None and settings.load_terms,
-                "speed": settings is not None and settings.speed_terms,
-                "direction": False,
+                "load": settings is not None and settings.terms.load,
+                "speed": settings is not None and settings.terms.speed,
+                "direction": settings is not None and settings.terms.direction,
                 "is_chosen": settings is not None and settings.is_chosen,
             },
             "rated_torque_Nm": self.rated_torque_Nm,
             "rated_torque_source": self.layout.rated_torque_source,
             "rate_Hz": survey.timing.rate_Hz,
+            "rate_standard_uncertainty_Hz": (
+                survey.timing.rate_standard_uncertainty_Hz if self.has_time else None
+            ),
             "rows": survey.rows,
             "share_repeated": survey.share_repeated,
             "shortest_interval_s": survey.timing.smallest_interval_s,
@@ -162,6 +175,7 @@ class IdentifiedLog:
             "phase_rad": order.phase_rad,
             "amplitude_standard_uncertainty_Nm": order.amplitude_standard_uncertainty_Nm,
             "is_steady": order.is_steady,
+            "evidence": order.evidence,
             "decision": verdict.decision,
             "torque_share": None if share is None else share.value,
             "torque_share_standard_uncertainty": (
@@ -187,3 +201,8 @@ class IdentifiedLog:
             "lag_square_s2": found.lag_square_s2,
             "lag_square_standard_uncertainty_s2": found.lag_square_standard_uncertainty_s2,
         }
+
+
+def _listed(settings: RippleSettings | None) -> list[float] | None:
+    interval = None if settings is None else settings.memory_interval_turns
+    return None if interval is None else list(interval)
