@@ -157,7 +157,7 @@ def _table(result: IdentifiedLog) -> list[str]:
             "not removed",
         )
     row("rate", _rate(result))
-    if result.survey.share_repeated:
+    if result.survey.share_repeated >= 0.0005:
         row(
             "held",
             f"{result.survey.share_repeated:.1%} of the rows in motion repeat the one before",

@@ -33,6 +33,8 @@ WISHED_WINDOWS: Final = 8
 #: Degree of the slow torque in a window.
 SLOW_DEGREE: Final = 5
 MOST_CYCLES_PER_ROW: Final = 0.45
+#: A window that tells two columns apart no better than this cannot show its orders.
+LEAST_PIVOT: Final = 1e-6
 #: Windows below this number say nothing of a scatter.
 LEAST_WINDOWS: Final = 4
 #: Mean and standard deviation of the logarithm of F(2, 4): one power over the mean of two others.
@@ -193,12 +195,20 @@ def fit_orders(
     if built is None:
         return {}
     visible, basis = built
-    solution, _, rank, _ = np.linalg.lstsq(basis, torque_Nm, rcond=None)
-    if rank < basis.shape[1]:
+    # Columns are scaled alike, and what is left out below is far from losing the digits that the
+    # normal equations do; many small decompositions of a tall matrix take most of the time.
+    normal = basis.T @ basis
+    try:
+        diagonal = np.diag(np.linalg.cholesky(normal))
+    except np.linalg.LinAlgError:
         return {}
+    if diagonal.min() <= LEAST_PIVOT * diagonal.max():
+        return {}
+    inverse = np.linalg.inv(normal)
+    solution = inverse @ (basis.T @ torque_Nm)
     left = torque_Nm - basis @ solution
     variance = float(left @ left) / max(1, len(left) - basis.shape[1])
-    spread = np.diag(np.linalg.inv(basis.T @ basis)) * variance
+    spread = np.diag(inverse) * variance
     count = len(visible)
     return {
         order: (

@@ -77,7 +77,9 @@ class Timing:
             return None
         # A normal distribution has 98 % within 4.65 deviations; a bin of the histogram has 0.23 %.
         spread_s = (late_s - early_s) / 4.65
-        bin_s = BIN_SHARE * median_s / math.sqrt(12.0) if spread_s > 1e-9 * median_s else 0.0
+        if spread_s <= 1e-6 * median_s:
+            return 0.0
+        bin_s = BIN_SHARE * median_s / math.sqrt(12.0)
         deviation_s = math.hypot(1.2533 * spread_s / math.sqrt(max(1, self.intervals)), bin_s)
         return deviation_s / median_s**2
 
