@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from fractions import Fraction
 
 import numpy as np
 import pytest
+from scipy.signal import lfilter
 
 from benchmarks.accuracy.joint import NOISE_NM, RATIO, WAVE_FACTOR, Run, make_joint, simulate
 from benchmarks.accuracy.motion import SAMPLE_PERIOD_S, constant_plan
 from benchmarks.accuracy.ripple import MISMATCH, RIGHT, TEETH
 from strainwave.identify.delay import find_delay, speed_changes
 from strainwave.identify.moving_rows import MovingRows, moving_rows, travel_windows
-from strainwave.identify.noise import rest_noise
+from strainwave.identify.noise import innovation_noise, rest_noise
 from strainwave.identify.orders import find_orders
 from strainwave.identify.output_cycles import find_output_cycles
 from strainwave.identify.ratio import (
@@ -99,7 +101,9 @@ def test_two_angles_give_ratio_and_sense(sign: int) -> None:
     assert ratio_of_angles(motor, noise, None) is None
 
 
-@pytest.mark.parametrize("seed", range(1, 22))
+@pytest.mark.parametrize(
+    "seed", [1, 2, 3, *(pytest.param(seed, marks=pytest.mark.slow) for seed in range(4, 22))]
+)
 def test_the_right_orders_and_no_false_one(seed: int) -> None:
     rows = _rows(_samples(simulate(make_joint(RIGHT, seed))))
     found = find_orders(rows, range(1, 13), WAVE_FACTOR, DELAY_S)
@@ -125,14 +129,74 @@ def test_phase_and_odd_orders() -> None:
 
 
 @pytest.mark.parametrize("scenario", [RIGHT, MISMATCH, TEETH])
-@pytest.mark.parametrize("seed", [1, 2, 3])
+@pytest.mark.parametrize("seed", [1, *(pytest.param(s, marks=pytest.mark.slow) for s in (2, 3))])
 def test_delay_to_a_tenth_of_a_sample(scenario: str, seed: int) -> None:
     samples = _samples(simulate(make_joint(scenario, seed)))
     orders = [order * WAVE_FACTOR for order in (2, 4, 6)]
     found = find_delay(samples, _rows(samples), orders, GIVEN)
     assert found is not None
     assert found.delay_s == pytest.approx(DELAY_S, abs=0.1 * SAMPLE_PERIOD_S)
+    assert found.doubt == ""
     assert 1e-6 < found.standard_uncertainty_s < 0.1 * SAMPLE_PERIOD_S
+    assert abs(found.delay_s - DELAY_S) < 3 * found.standard_uncertainty_s
+
+
+def test_a_long_delay_needs_a_second_order() -> None:
+    run = simulate(make_joint(RIGHT, 1))
+    late = Samples(
+        run.motion.time_s[20:],
+        run.motor_angle_rad[20:],
+        run.measured_torque_Nm[:-20],
+        np.zeros(len(run.measured_torque_Nm) - 20),
+    )
+    found = find_delay(late, _rows(late), [2 * WAVE_FACTOR, 4 * WAVE_FACTOR], GIVEN)
+    assert found is not None
+    assert found.doubt == ""
+    assert found.delay_s == pytest.approx(20e-3, abs=1e-4)
+    alone = find_delay(late, _rows(late), [2 * WAVE_FACTOR], GIVEN)
+    assert alone is not None
+    assert "one order of the ripple alone" in alone.doubt
+
+
+@pytest.mark.slow
+def test_a_phase_that_differs_by_direction_widens_the_delays_uncertainty() -> None:
+    run = simulate(make_joint(RIGHT, 2))
+    extra_Nm = (
+        0.3 * np.sign(run.motion.speed_rad_s) * np.cos(2 * WAVE_FACTOR * run.motor_angle_rad + 1)
+    )
+    samples = _samples(replace(run, measured_torque_Nm=run.measured_torque_Nm + extra_Nm))
+    orders = [order * WAVE_FACTOR for order in (2, 4, 6)]
+    found = find_delay(samples, _rows(samples), orders, GIVEN)
+    assert found is not None
+    assert 0.03e-3 < abs(found.delay_s - DELAY_S) < 2 * found.standard_uncertainty_s
+
+
+def test_the_noises_uncertainty_is_how_far_it_scatters() -> None:
+    random = np.random.default_rng(9)
+    time_s = np.arange(1000) * 1e-3
+    found = [
+        rest_noise(Samples(time_s, np.zeros(1000), random.standard_normal(1000), np.zeros(1000)))
+        for _ in range(400)
+    ]
+    values = np.array([each.noise_Nm for each in found if each is not None])
+    stated = np.array([each.standard_uncertainty_Nm for each in found if each is not None])
+    assert len(values) == 400
+    # The larger of two estimates: a little more than the scatter, on average.
+    assert 1.0 < float(np.median(stated)) / float(np.std(values)) < 1.5
+    assert innovation_noise(np.empty(0)) is None
+
+
+def test_cycles_per_output_turn_are_rarely_false() -> None:
+    random = np.random.default_rng(10)
+    angle_rad = np.linspace(0.0, 6 * 2 * np.pi * RATIO, 6_000)
+    time_s = np.arange(6_000) * 1e-2
+    false = 0
+    for _ in range(100):
+        # Torque that forgets within a twentieth of an output turn, and white noise.
+        slow = lfilter([1.0], [1.0, -0.98], random.standard_normal(6_000))
+        rows = moving_rows(time_s, angle_rad, slow + random.standard_normal(6_000))
+        false += len(find_output_cycles(rows, Fraction(100)))
+    assert false <= 8
 
 
 def test_one_speed_tells_no_delay() -> None:

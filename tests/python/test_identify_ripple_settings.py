@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy import stats
 
 from benchmarks.accuracy.evaluation import log_of
-from benchmarks.accuracy.joint import FULL_SCALE_NM, make_joint, simulate
-from benchmarks.accuracy.motion import constant_plan
+from benchmarks.accuracy.joint import FULL_SCALE_NM, Run, make_joint, simulate
+from benchmarks.accuracy.motion import LEARNING, constant_plan
 from benchmarks.accuracy.ripple import MISMATCH, RIGHT
-from strainwave import RippleFilter, RippleFilterConfig, StatusFlag
+from strainwave import RippleFilter, RippleFilterConfig, RippleOrder, StatusFlag
+from strainwave.identify import ripple_settings
 from strainwave.identify.likelihood import row_likelihoods
 from strainwave.identify.ripple_settings import (
     MEMORIES_TURNS,
@@ -19,6 +22,7 @@ from strainwave.identify.ripple_settings import (
     choose_ripple_settings,
 )
 from strainwave.methods.registry import Setting, build_method
+from strainwave.methods.ripple import learned_at_the_start
 from strainwave.samples import Samples
 
 GIVEN = {
@@ -122,3 +126,73 @@ def test_a_method_chooses_on_the_excerpt_it_is_given(name: str) -> None:
     without = build_method(name, Setting(1e-3, None, FULL_SCALE_NM))
     assert not without.settings.is_chosen
     assert without.settings.config.memory_turns == 10.0
+
+
+def _with_direction(seed: int, size_Nm: float, *, another: bool = False) -> tuple[Run, Samples]:
+    """Give a joint whose order 2 differs by direction; the separate run starts elsewhere."""
+    joint = make_joint(RIGHT, seed)
+    if another:
+        joint = replace(joint, start_angle_rad=joint.start_angle_rad + 1, speed_scale=0.95)
+    run = simulate(joint)
+    log = log_of(run)
+    extra_Nm = size_Nm * np.sign(run.motion.speed_rad_s) * np.cos(2 * log.wave_angle_rad + 1.0)
+    torque_Nm = log.torque_Nm + extra_Nm
+    return run, Samples(log.time_s, log.wave_angle_rad, torque_Nm, log.expected_torque_Nm)
+
+
+def _error_percent(run: Run, samples: Samples, config: RippleFilterConfig) -> float:
+    cleaned = RippleFilter(config).process(
+        samples.time_s, samples.motor_angle_rad, samples.torque_Nm
+    )
+    error_Nm = (cleaned.torque_Nm - run.true_torque_Nm)[run.motion.phase != LEARNING]
+    return 100 * float(np.sqrt(np.mean(error_Nm**2))) / FULL_SCALE_NM
+
+
+def test_ripple_that_differs_by_direction_gets_the_term_and_is_the_better_for_it(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    excerpt = _with_direction(2, 0.3)[1]
+    found = _choose(excerpt)
+    assert found.terms.direction
+    assert [order.with_direction for order in found.config.orders] == [True, True, False]
+    monkeypatch.setattr(ripple_settings, "LEAST_REVERSALS", 1000)
+    without = _choose(excerpt)
+    assert not without.terms.direction
+    run, other = _with_direction(2, 0.3, another=True)
+    error_percent = _error_percent(run, other, found.config)
+    assert 0.1 < error_percent < 0.16
+    assert error_percent < 0.65 * _error_percent(run, other, without.config)
+
+
+@pytest.mark.parametrize(
+    "seed", [1, *(pytest.param(seed, marks=pytest.mark.slow) for seed in range(2, 22))]
+)
+@pytest.mark.parametrize("scenario", [RIGHT, MISMATCH])
+def test_no_term_in_direction_where_there_is_none(scenario: str, seed: int) -> None:
+    assert not _choose(_simulated(scenario, seed)).terms.direction
+
+
+def test_one_reversal_gives_no_term_in_direction() -> None:
+    there_rad = 150.0 * np.arange(20_000) * 1e-3
+    angle_rad = np.concatenate([there_rad, there_rad[::-1]])
+    direction = np.sign(np.gradient(angle_rad))
+    assert not _choose(_made(1.5 + 0.7 * direction, angle_rad)).terms.direction
+
+
+def test_a_memory_that_is_told_well_has_a_narrow_interval() -> None:
+    found = _choose(_simulated(MISMATCH, 31))
+    assert found.memory_interval_turns is not None
+    shortest, longest = found.memory_interval_turns
+    assert 3.0 <= shortest <= found.config.memory_turns <= longest <= 20.0
+
+
+def test_coefficients_learned_backwards_serve_forwards() -> None:
+    to_and_fro_rad = 200.0 * np.abs((np.arange(40_000) * 1e-3) % 4.0 - 2.0)
+    direction = np.sign(np.gradient(to_and_fro_rad))
+    samples = _made(1.5 + 0.6 * direction, to_and_fro_rad)
+    config = RippleFilterConfig(
+        orders=[RippleOrder(2, with_direction=True)], memory_turns=80.0, **GIVEN
+    )
+    learned = learned_at_the_start(samples, config)
+    assert learned is not None
+    assert learned.coefficients_Nm == pytest.approx([1.5, 0.0, 0.6, 0.0], abs=0.05)

@@ -111,7 +111,9 @@ def find_orders(
         for order in candidates:
             if {order - 0.5, order, order + 0.5} <= everything.keys():
                 power = [abs(everything[order + side][0]) ** 2 for side in (-0.5, 0.0, 0.5)]
-                ratios[order].append(float(np.log(2 * power[1] / (power[0] + power[2]))))
+                # A torque that does not change has no power anywhere.
+                if min(power) > 0.0:
+                    ratios[order].append(float(np.log(2 * power[1] / (power[0] + power[2]))))
     return [
         _measure(order, amplitudes[order], ratios[order], used)
         for order in candidates
