@@ -69,6 +69,11 @@ class Ripple:
     cannot_tell: tuple[str, ...]
 
     @property
+    def noise_Nm(self) -> float:
+        """Standard deviation of the noise of one sample, Nm."""
+        return self.noise.noise_Nm
+
+    @property
     def present(self) -> tuple[FoundOrder, ...]:
         """Orders that are there."""
         return tuple(order for order in self.orders if order.is_present)
