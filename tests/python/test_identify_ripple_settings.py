@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import replace
 
 import numpy as np
@@ -196,3 +197,27 @@ def test_coefficients_learned_backwards_serve_forwards() -> None:
     learned = learned_at_the_start(samples, config)
     assert learned is not None
     assert learned.coefficients_Nm == pytest.approx([1.5, 0.0, 0.6, 0.0], abs=0.05)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", [1, 2, 3, 4])
+def test_what_any_memory_and_terms_could_reach_with_mismatch(seed: int) -> None:
+    """Chosen with the truth of the separate run itself: the least error that a choice could have."""
+    joint = make_joint(MISMATCH, seed)
+    joint = replace(joint, start_angle_rad=joint.start_angle_rad + 1, speed_scale=0.95)
+    run = simulate(joint)
+    log = log_of(run)
+    samples = Samples(log.time_s, log.wave_angle_rad, log.torque_Nm, log.expected_torque_Nm)
+    errors_percent = []
+    for memory_turns, load, speed, direction in itertools.product(
+        MEMORIES_TURNS, *[(False, True)] * 3
+    ):
+        orders = [
+            RippleOrder(order, with_load=load, with_speed=speed, with_direction=direction)
+            for order in (2, 4, 6)
+        ]
+        config = RippleFilterConfig(
+            orders=[1, *orders], memory_turns=memory_turns, reference_speed_rad_s=156.0, **GIVEN
+        )
+        errors_percent.append(_error_percent(run, samples, config))
+    assert 0.125 < min(errors_percent) < 0.155
