@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Annotated, Literal
 import cyclopts
 
 if TYPE_CHECKING:
-    from strainwave.identify.torque_or_artefact import OrderVerdict
     from strainwave.identify.ripple_settings import RippleSettings
+    from strainwave.identify.torque_or_artefact import OrderVerdict
     from strainwave.records.identified_log import IdentifiedLog
 
 _LONGEST_COMMAND = 500
