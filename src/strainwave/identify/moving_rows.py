@@ -27,12 +27,15 @@ class MovingRows:
     ----------
     time_s, angle_rad, speed_rad_s, torque_Nm : numpy.ndarray
         Shape (rows,); angle and speed are those of the side that was measured.
+    place : numpy.ndarray
+        Where each row was among the rows that were given, shape (rows,), from 0.
     """
 
     time_s: NDArray[np.float64]
     angle_rad: NDArray[np.float64]
     speed_rad_s: NDArray[np.float64]
     torque_Nm: NDArray[np.float64]
+    place: NDArray[np.intp]
 
     def __len__(self) -> int:
         return len(self.time_s)
@@ -60,16 +63,18 @@ def moving_rows(
     time_s, angle_rad, torque_Nm = time_s[good], angle_rad[good], torque_Nm[good]
     if len(good) < 2 * SPEED_ROWS + 2:
         nothing = np.empty(0)
-        return MovingRows(nothing, nothing, nothing, nothing)
+        return MovingRows(nothing, nothing, nothing, nothing, np.empty(0, np.intp))
     new = np.append(True, (np.diff(angle_rad) != 0.0) | (np.diff(torque_Nm) != 0.0))
-    time_s, angle_rad, torque_Nm = time_s[new], angle_rad[new], torque_Nm[new]
+    good, time_s, angle_rad, torque_Nm = good[new], time_s[new], angle_rad[new], torque_Nm[new]
     rows = np.arange(len(time_s))
     after = np.minimum(rows + SPEED_ROWS, len(rows) - 1)
     before = np.maximum(rows - SPEED_ROWS, 0)
     speed = (angle_rad[after] - angle_rad[before]) / (time_s[after] - time_s[before])
     high = float(np.quantile(np.abs(speed), 0.95))
     moving = np.abs(speed) > max(LEAST_SPEED_SHARE * high, 1e-9)
-    return MovingRows(time_s[moving], angle_rad[moving], speed[moving], torque_Nm[moving])
+    return MovingRows(
+        time_s[moving], angle_rad[moving], speed[moving], torque_Nm[moving], good[moving]
+    )
 
 
 def travel_windows(

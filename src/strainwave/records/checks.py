@@ -11,7 +11,7 @@ from strainwave.errors import InputError
 from strainwave.records.moving import LARGEST_MOTOR_SPEED_RAD_S
 
 if TYPE_CHECKING:
-    from collections.abc import Collection
+    from collections.abc import Collection, Sequence
     from pathlib import Path
 
     from strainwave.records.columns import FoundColumn
@@ -22,7 +22,12 @@ SHORTEST_INTERVAL_S: Final = 1e-9
 OUTPUT_ENDINGS: Final = (".csv", ".parquet")
 
 
-def check_output(out: Path, *inputs: Path | None) -> None:
+def check_output(
+    out: Path,
+    *inputs: Path | None,
+    option: str = "--out",
+    endings: Sequence[str] = OUTPUT_ENDINGS,
+) -> None:
     """Make sure that a result can be written, before anything is computed.
 
     Parameters
@@ -31,23 +36,27 @@ def check_output(out: Path, *inputs: Path | None) -> None:
         Where the result goes.
     *inputs : Path or None
         What is read; the result must not replace it.
+    option : str
+        The option that names the place.
+    endings : sequence of str
+        Endings that its name may have.
 
     Raises
     ------
     InputError
         If the name, the folder or the permission is wrong.
     """
-    if out.suffix.lower() not in OUTPUT_ENDINGS:
+    if out.suffix.lower() not in endings:
         raise InputError(
-            f"--out {out}: the name ends in {out.suffix!r}; expected "
-            f"{' or '.join(OUTPUT_ENDINGS)}, so choose another name"
+            f"{option} {out}: the name ends in {out.suffix!r}; expected "
+            f"{' or '.join(endings)}, so choose another name"
         )
     if out.is_dir():
-        raise InputError(f"--out {out}: it is a folder; expected a file, so add a file name")
+        raise InputError(f"{option} {out}: it is a folder; expected a file, so add a file name")
     for path in inputs:
         if path is not None and os.path.realpath(out) == os.path.realpath(path):
             raise InputError(
-                f"--out {out}: it is the file that is read; expected another one, so choose "
+                f"{option} {out}: it is the file that is read; expected another one, so choose "
                 "another name"
             )
     folder = out.resolve().parent
@@ -59,7 +68,7 @@ def check_output(out: Path, *inputs: Path | None) -> None:
     except OSError as error:
         reason = (error.strerror or str(error)).lower()
         raise InputError(
-            f"--out {out}: it cannot be written ({reason}); expected an existing folder with "
+            f"{option} {out}: it cannot be written ({reason}); expected an existing folder with "
             "permission to write, so choose another place"
         ) from error
 

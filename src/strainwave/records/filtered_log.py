@@ -22,8 +22,10 @@ class FilteredLog:
 
     Attributes
     ----------
-    path, out : Path
-        The recording, and the file of cleaned torque.
+    path : Path
+        The recording.
+    out : Path or None
+        The file of cleaned torque; None where none was asked for.
     layout : Layout
         How the recording was read.
     survey : Survey
@@ -47,7 +49,7 @@ class FilteredLog:
     """
 
     path: Path
-    out: Path
+    out: Path | None
     layout: Layout
     survey: Survey
     method: str
@@ -72,7 +74,7 @@ class FilteredLog:
         survey, layout = self.survey, self.layout
         return {
             "input": str(self.path),
-            "output": str(self.out),
+            "output": None if self.out is None else str(self.out),
             "rows": survey.rows,
             "rate_Hz": survey.timing.rate_Hz,
             "method": self.method,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import deque
+from contextlib import nullcontext
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -41,17 +42,19 @@ if TYPE_CHECKING:
 
     from strainwave.methods.interface import Cleaned, Method
     from strainwave.records.signals import Rows
+    from strainwave.records.watching import Watch
 
 
 def filter_log(
     path: Path,
-    out: Path,
+    out: Path | None,
     options: Options | None = None,
     *,
     joint_path: Path | None = None,
     method: str | None = None,
     build: Callable[[str, Setting], Method] | None = None,
     progress: Progress = untold,
+    watch: Watch | None = None,
 ) -> FilteredLog:
     """Remove the ripple from a recording of any length.
 
@@ -61,8 +64,9 @@ def filter_log(
     ----------
     path : Path
         The recording: CSV or Parquet.
-    out : Path
-        Where the result goes: .csv or .parquet; written whole or not at all.
+    out : Path or None
+        Where the result goes: .csv or .parquet; written whole or not at all. None writes nothing,
+        for who wants to know what would be done.
     options : Options, optional
         How the recording is read; what it leaves open the joint file says.
     joint_path : Path, optional
@@ -74,6 +78,8 @@ def filter_log(
         without.
     progress : Progress
         Is told how far the work is.
+    watch : Watch, optional
+        Is shown the method and everything that it gives.
 
     Returns
     -------
@@ -85,8 +91,10 @@ def filter_log(
     InputError
         If something that was given cannot be used; nothing is written then.
     """
-    path, out, options = Path(path), Path(out), options or Options()
-    check_output(out, path, joint_path)
+    path, options = Path(path), options or Options()
+    out = None if out is None else Path(out)
+    if out is not None:
+        check_output(out, path, joint_path)
     joint = None if joint_path is None else read_joint(joint_path).joint
     name = method_name(method, joint)
     is_known = build is None
@@ -117,19 +125,28 @@ def filter_log(
         wave_factor_source=wave.source,
         ripple_settings=getattr(remover, "settings", None),
     )
-    return _filter(log, InOrder(remover), sample_rows(recording, layout, found, survey, progress))
+    if watch is not None:
+        # With what was chosen: who builds it once more gets the same.
+        watch.begin(survey.rows, name, replace(setting, ripple_settings=log.ripple_settings), build)
+    rows = sample_rows(recording, layout, found, survey, progress)
+    return _filter(log, InOrder(remover), rows, watch)
 
 
-def _filter(log: FilteredLog, method: Method, parts: Iterator[Rows]) -> FilteredLog:
+def _filter(
+    log: FilteredLog, method: Method, parts: Iterator[Rows], watch: Watch | None
+) -> FilteredLog:
     tally = _Tally()
     waiting = _Waiting()
-    with result_file(log.out) as write:
+    with nullcontext() if log.out is None else result_file(log.out) as write:
 
         def put(cleaned: Cleaned) -> None:
             if len(cleaned):
                 time_s, measured_Nm = waiting.pop(len(cleaned))
                 tally.take(measured_Nm, cleaned)
-                write(time_s, measured_Nm, cleaned)
+                if watch is not None:
+                    watch.take(time_s, measured_Nm, cleaned)
+                if write is not None:
+                    write(time_s, measured_Nm, cleaned)
 
         for rows in parts:
             waiting.push(rows)
