@@ -23,6 +23,7 @@ def filter_command(
     method: str | None = None,
     rated_torque: float | None = None,
     rate: float | None = None,
+    report: Path | None = None,
     json: bool = False,
 ) -> None:
     """Remove the ripple from a recording in CSV or Parquet, of any length.
@@ -53,6 +54,8 @@ def filter_command(
         Full scale, Nm; estimated from the recording where nothing says it.
     rate : float
         Rows a second, Hz, where the recording has no column of time.
+    report : Path
+        A page that shows what was done, for a browser or to print: .html.
     json : bool
         Print the result as JSON.
     """
@@ -60,8 +63,10 @@ def filter_command(
     from rich.progress import Progress as Bar
 
     from strainwave.cli.output import print_json, progress_console, result_console
+    from strainwave.cli.reporting import LINE_AFTER_LINE, check_report, command_line
     from strainwave.records import Options, filter_log, parse_mapping, parse_ratio
 
+    check_report(report, out, log, joint)
     options = Options(
         mapping=parse_mapping(map_),
         angle_side=angle_side,
@@ -81,22 +86,46 @@ def filter_command(
         transient=True,
     ) as bar:
         task = bar.add_task("reading", total=1.0)
-        result = filter_log(
-            log,
-            out,
-            options,
-            joint_path=joint,
-            method=method,
-            progress=lambda step, share: bar.update(task, description=step, completed=share),
-        )
+
+        def progress(step: str, share: float) -> None:
+            bar.update(task, description=step, completed=share)
+
+        evidence = None
+        if report is None:
+            result = filter_log(
+                log, out, options, joint_path=joint, method=method, progress=progress
+            )
+        else:
+            from strainwave.evidence import filter_with_evidence
+            from strainwave.report.recording import write_recording_report
+
+            result, evidence = filter_with_evidence(
+                log, out, options, joint_path=joint, method=method, progress=progress
+            )
+            progress("drawing", 0.8)
+            given = {
+                "--angle-side": angle_side,
+                "--ratio": ratio,
+                "--joint": joint,
+                "--method": method,
+                "--rated-torque": rated_torque,
+                "--rate": rate,
+                "--out": out,
+                "--report": report,
+            }
+            command = command_line("filter", log, map_, given, between=LINE_AFTER_LINE)
+            write_recording_report(report, result, evidence, command, joint_path=joint)
     for warning in result.warnings:
         console.print(f"strainwave: warning: {log}: {warning}", soft_wrap=True, markup=False)
     if json:
-        print_json(result.as_dict())
+        shown = {} if evidence is None else {"report": str(report), "evidence": evidence.as_dict()}
+        print_json(result.as_dict() | shown)
         return
     lines = result_console()
     for line in _summary(result):
         lines.print(line, soft_wrap=True, markup=False)
+    if report is not None:
+        lines.print(f"  report: {report}", soft_wrap=True, markup=False)
 
 
 def _summary(result: FilteredLog) -> list[str]:

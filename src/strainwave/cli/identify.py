@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shlex
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
@@ -28,6 +27,7 @@ def identify_command(
     rate: float | None = None,
     joint: Path | None = None,
     reference: Annotated[str | None, cyclopts.Parameter(allow_leading_hyphen=True)] = None,
+    report: Path | None = None,
     json: bool = False,
 ) -> None:
     """Find ratio, orders, delay, noise, memory and terms in a recording; write a joint file.
@@ -55,14 +55,18 @@ def identify_command(
         A joint file to start from; what is not identified stays as it is there.
     reference : str
         Column of a reference torque sensor, as COLUMN[:UNIT]; decides which orders are torque.
+    report : Path
+        A page that shows what was found, and the recording filtered with it: .html.
     json : bool
         Print the result as JSON.
     """
     from strainwave.cli.output import print_json, progress_console, result_console
+    from strainwave.cli.reporting import LINE_AFTER_LINE, check_report, command_line
     from strainwave.records import Options, parse_ratio
     from strainwave.records.identifying import identify_log
     from strainwave.records.reference_torque import parse_with_reference
 
+    check_report(report, out, log, joint)
     mapping, reference_column = parse_with_reference(map_, reference)
     options = Options(
         mapping=mapping,
@@ -71,7 +75,7 @@ def identify_command(
         rated_torque_Nm=rated_torque,
         rate_Hz=rate,
     )
-    given = {
+    given: dict[str, object] = {
         "--angle-side": angle_side,
         "--ratio": ratio,
         "--rated-torque": rated_torque,
@@ -80,12 +84,7 @@ def identify_command(
         "--reference": reference,
         "--out": out,
     }
-    words = ["strainwave", "identify", str(log)]
-    for text in map_:
-        words += ["--map", text]
-    for name, value in given.items():
-        words += [] if value is None else [name, str(value)]
-    command = shlex.join(words)
+    command = command_line("identify", log, map_, given)
     usable = command.isprintable() and len(command) <= _LONGEST_COMMAND
     result = identify_log(
         log,
@@ -95,15 +94,29 @@ def identify_command(
         reference=reference_column,
         command=command if usable else None,
     )
+    shown = {}
+    if report is not None:
+        from strainwave.evidence import filter_as_identified
+        from strainwave.report.recording import write_recording_report
+
+        filtered, evidence = filter_as_identified(result, options)
+        given["--report"] = report
+        command = command_line("identify", log, map_, given, between=LINE_AFTER_LINE)
+        write_recording_report(
+            report, filtered, evidence, command, joint_path=out, identified=result
+        )
+        shown = {"report": str(report), "evidence": evidence.as_dict()}
     console = progress_console()
     for warning in result.warnings:
         console.print(f"strainwave: warning: {log}: {warning}", soft_wrap=True, markup=False)
     if json:
-        print_json(result.as_dict())
+        print_json(result.as_dict() | shown)
         return
     lines = result_console()
     for line in _table(result):
         lines.print(line, soft_wrap=True, markup=False)
+    if report is not None:
+        lines.print(f"report: {report}", soft_wrap=True, markup=False)
 
 
 def _table(result: IdentifiedLog) -> list[str]:

@@ -10,7 +10,7 @@ import numpy as np
 
 from strainwave.fidelity.scene import lines_apart
 from strainwave.identify.moving_rows import travel_windows
-from strainwave.identify.orders import SLOW_DEGREE, fit_window
+from strainwave.identify.orders import SLOW_DEGREE, fit_orders
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -122,7 +122,7 @@ def order_lines(
     rows: dict[float, list[tuple[float, ...]]] = {order: [] for order in apart}
     for window in windows:
         before, after = (
-            fit_window(motion.angle_rad[window], torque_Nm[window], apart, 1.0)
+            fit_orders(motion.angle_rad[window], torque_Nm[window], apart, 1.0)
             for torque_Nm in motion.torque_Nm
         )
         where = (

@@ -27,10 +27,13 @@ class PlainTable:
         Column headings.
     rows : tuple of tuple of str
         Cells, row by row.
+    numeric : tuple of int
+        Columns of numbers, counted from 0, which are set to the right.
     """
 
     headings: tuple[str, ...]
     rows: tuple[tuple[str, ...], ...]
+    numeric: tuple[int, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -53,6 +56,12 @@ class Item:
         A table after the figure.
     comparisons : tuple of Comparison
         Published numbers beside ours, after the figure.
+    narrow : matplotlib.figure.Figure or None
+        The figure for a narrow screen, where there is one.
+    code : str
+        Text to be copied, after the table.
+    is_folded : bool
+        Whether it opens only on demand.
     """
 
     title: str
@@ -62,11 +71,19 @@ class Item:
     alternative: str = ""
     table: PlainTable | None = None
     comparisons: tuple[Comparison, ...] = ()
+    narrow: Figure | None = None
+    code: str = ""
+    is_folded: bool = False
 
     @property
     def image(self) -> str:
         """The figure as a data address, or nothing."""
         return "" if self.figure is None else data_uri(svg(self.figure))
+
+    @property
+    def narrow_image(self) -> str:
+        """The figure for a narrow screen as a data address, or nothing."""
+        return "" if self.narrow is None else data_uri(svg(self.narrow))
 
 
 @dataclass(frozen=True)
@@ -144,6 +161,23 @@ class Page:
     version: str
 
 
+def templates() -> jinja2.Environment:
+    """Open the folder of templates.
+
+    Returns
+    -------
+    jinja2.Environment
+        Escapes what is put into a page; a name that is not there is an error.
+    """
+    return jinja2.Environment(
+        loader=jinja2.PackageLoader("strainwave.report", "templates"),
+        autoescape=jinja2.select_autoescape(["html", "j2"]),
+        undefined=jinja2.StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+
+
 def render(page: Page) -> str:
     """Render a page; it needs no other file and no network.
 
@@ -157,14 +191,7 @@ def render(page: Page) -> str:
     str
         An HTML document.
     """
-    environment = jinja2.Environment(
-        loader=jinja2.PackageLoader("strainwave.report", "templates"),
-        autoescape=jinja2.select_autoescape(["html", "j2"]),
-        undefined=jinja2.StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
-    template = environment.get_template("demo.html.j2")
+    template = templates().get_template("demo.html.j2")
     return template.render(
         title=page.title,
         lead=page.lead,

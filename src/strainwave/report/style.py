@@ -23,6 +23,8 @@ BLACK: Final = "#222222"
 SERIES: Final = (BLUE, ORANGE, GREEN, PURPLE, YELLOW, SKY)
 
 PAGE_WIDTH_IN: Final = 7.2
+#: For a screen that is held in a hand: its text is then as large as the page's.
+NARROW_WIDTH_IN: Final = 3.7
 _SETTINGS: Final[Mapping[Any, Any]] = {
     "font.family": "DejaVu Sans",
     "font.size": 9.0,

@@ -1,0 +1,148 @@
+"""The section of a page that says what was identified, how sure it is, and what was not told."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from strainwave.records.identified_log import measured_text
+from strainwave.report.page import Item, Part, PlainTable
+from strainwave.report.recording_words import number_text, sentences, with_plus_minus
+from strainwave.report.style import true_minus
+
+if TYPE_CHECKING:
+    from strainwave.identify.orders import FoundOrder
+    from strainwave.records.identified_log import IdentifiedLog
+
+_SOURCES = {
+    "line": "the line of the ripple's order 2",
+    "angles": "both angles, one against the other",
+    "told": "as told",
+    "unknown": "not known",
+}
+_FULL_SCALE = {
+    "option": "as told",
+    "joint file": "as told in the joint file",
+    "estimated": "estimated: the largest torque, rounded up",
+}
+_DASH = "\N{EN DASH}"
+
+
+def identified_part(result: IdentifiedLog) -> Part:
+    """Build the section on what was identified.
+
+    Parameters
+    ----------
+    result : IdentifiedLog
+        What was found.
+
+    Returns
+    -------
+    Part
+        Quantities with uncertainty and source, orders with their evidence, and what the recording
+        does not tell.
+    """
+    items = [
+        Item(
+            "",
+            table=PlainTable(("What", "Value", "Where it comes from"), tuple(_quantities(result))),
+        ),
+        _orders(result),
+    ]
+    if result.ripple.output_cycles:
+        items.append(_cycles(result))
+    if result.warnings:
+        says = sentences(result.warnings)
+        items.append(Item("What it does not tell, and what to know", paragraphs=says))
+    sections = ", ".join(f"[{name}]" for name in result.sections)
+    text = (
+        f"Written to {result.out.name}: {sections}. Uncertainties are standard uncertainties. "
+        "Everything else on this page shows the recording filtered with that file."
+    )
+    return Part("identified", "What was identified", (text,), items=tuple(items))
+
+
+def _measured(value: float, uncertainty: float | None) -> str:
+    text = f"{value:.7g}" if uncertainty is None else measured_text(value, uncertainty)
+    return true_minus(with_plus_minus(text))
+
+
+def _quantities(result: IdentifiedLog) -> list[tuple[str, str, str]]:
+    gearing, ripple, settings = result.gearing, result.ripple, result.ripple.settings
+    ratio = _DASH
+    if gearing.ratio is not None:
+        ratio = _measured(float(gearing.ratio), gearing.ratio_standard_uncertainty)
+    delay, delay_source = "0 (not told)", "does not show in this recording"
+    if ripple.delay is not None:
+        delay = _measured(1e3 * ripple.delay.delay_s, 1e3 * ripple.delay.standard_uncertainty_s)
+        delay, delay_source = f"{delay} ms", "likelihood of the filter's innovations"
+    memory, chosen, terms = _DASH, "no order stands out", "none"
+    if settings is not None:
+        memory = f"{settings.config.memory_turns:g} motor turns"
+        chosen = "likelihood, 3 to 160 turns tried"
+        if not settings.is_chosen:
+            chosen = "standard: too little motion to choose"
+        named = [name for name in ("load", "speed") if getattr(settings, f"{name}_terms")]
+        terms = " and ".join(named) or "none"
+    tried = "load and speed tried by likelihood, from 300 motor turns on; direction not tried"
+    survey = result.survey
+    return [
+        ("ratio R", ratio, _SOURCES.get(gearing.source, gearing.source)),
+        ("factor m", f"{float(gearing.factor):.7g}", "with the ratio"),
+        (
+            "sense of the output",
+            {1: "as the motor", -1: "against the motor"}.get(gearing.output_direction, "not told"),
+            "both angles, where they are there",
+        ),
+        ("delay of the torque behind the angle", delay, delay_source),
+        (
+            "noise of one sample",
+            f"{number_text(ripple.noise_Nm)} Nm",
+            "differences at rest, or see below",
+        ),
+        ("memory", memory, chosen),
+        ("terms in", terms, tried),
+        (
+            "rated torque",
+            f"{result.rated_torque_Nm:g} Nm",
+            _FULL_SCALE[result.layout.rated_torque_source],
+        ),
+        ("motor turns", number_text(ripple.motor_turns), "the angle"),
+        (
+            "rows that repeat the row before",
+            f"{100 * survey.share_repeated:.3g} %",
+            "rows in motion",
+        ),
+    ]
+
+
+def _orders(result: IdentifiedLog) -> Item:
+    headings = ("Order", "Amplitude (Nm)", "Phase (rad)", "Evidence", "There?")
+    rows = tuple(_order_row(each) for each in result.ripple.orders)
+    if not rows:
+        return Item("Orders", paragraphs=("No order could be looked at in this recording.",))
+    text = (
+        "Cycles per turn of the wave (per motor turn, over m). Evidence is the logarithm of the "
+        "likelihood that an order gains, less what its coefficients cost: it is there where that is "
+        "above 0. Where the phase wanders, the amplitude is a root mean square."
+    )
+    return Item("Orders", paragraphs=(text,), table=PlainTable(headings, rows, (1, 2, 3)))
+
+
+def _order_row(order: FoundOrder) -> tuple[str, ...]:
+    return (
+        f"{order.order:g}",
+        _measured(order.amplitude_Nm, order.amplitude_standard_uncertainty_Nm),
+        true_minus(f"{order.phase_rad:+.3f}") if order.is_steady else "wanders",
+        true_minus(f"{order.evidence:.1f}"),
+        "yes, removed" if order.is_present else "no",
+    )
+
+
+def _cycles(result: IdentifiedLog) -> Item:
+    rows = tuple(
+        (str(each.cycles), _measured(each.amplitude_Nm, each.amplitude_standard_uncertainty_Nm))
+        for each in result.ripple.output_cycles
+    )
+    text = "Gravity and misalignment; reported, not removed."
+    table = PlainTable(("Cycles per output turn", "Amplitude (Nm)"), rows, (1,))
+    return Item("Torque that repeats with the output", paragraphs=(text,), table=table)
