@@ -314,7 +314,22 @@ def test_kept_orders_are_marked_as_real_torque(tmp_path: Path, call: Call) -> No
     assert abs(kept[4.0]["change_dB"]) < 0.5
     page = Page(report)
     assert page.row("4")[5] == "kept: real torque"
+    assert "The ripple at 2 cycles per motor turn went from" in page.text
     assert "kept_orders = [4.0]" in page.text
+
+
+def test_where_every_order_is_kept_nothing_is_called_removed(tmp_path: Path, call: Call) -> None:
+    log = moving_log(tmp_path / "run.parquet", rows=6000)
+    joint, report = tmp_path / "joint.toml", tmp_path / "p.html"
+    given = ("--map", MAP, "--angle-side", "motor", "--rated-torque", 30)
+    assert call("identify", log, *given, "--ratio", 100, "--out", joint).code == 0
+    text = joint.read_text()
+    orders = re.search(r"(?m)^orders = (.*)$", text)
+    assert orders is not None
+    joint.write_text(text.replace("kept_orders = []", f"kept_orders = {orders.group(1)}"))
+    out = tmp_path / "o.csv"
+    assert call("filter", log, "--joint", joint, "--out", out, "--report", report).code == 0
+    assert "No ripple is removed" in Page(report).text
 
 
 @pytest.mark.parametrize(
@@ -377,12 +392,13 @@ def test_identify_has_a_page_of_what_was_found(tmp_path: Path, call: Call) -> No
         (row,) = [
             row
             for row in page.cells
-            if len(row) == 5 and row[0] == f"{order['order']:g}" and row[4] == "yes, removed"
+            if len(row) == 5 and row[0] == f"{order['order']:g}" and row[4] == "yes"
         ]
         shown = measured_text(
             order["amplitude_Nm"], order["amplitude_standard_uncertainty_Nm"]
         ).replace(" +- ", "\N{NO-BREAK SPACE}\N{PLUS-MINUS SIGN}\N{NO-BREAK SPACE}")
         assert row[1] == shown
+        assert [f"{order['order']:g}", order["decision"]] in [cells[:2] for cells in page.cells]
     assert page.row("memory")[1] == f"{ended.result['memory_turns']:g} motor turns"
     assert page.row("ratio R")[1:] == ["100", "as told"]
     for warning in ended.result["warnings"]:

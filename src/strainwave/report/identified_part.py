@@ -11,6 +11,7 @@ from strainwave.report.style import true_minus
 
 if TYPE_CHECKING:
     from strainwave.identify.orders import FoundOrder
+    from strainwave.identify.torque_or_artefact import OrderVerdict
     from strainwave.records.identified_log import IdentifiedLog
 
 _SOURCES = {
@@ -48,6 +49,8 @@ def identified_part(result: IdentifiedLog) -> Part:
         ),
         _orders(result),
     ]
+    if result.judged.verdicts:
+        items.append(_torque_or_artefact(result))
     if result.ripple.output_cycles:
         items.append(_cycles(result))
     if result.warnings:
@@ -134,8 +137,42 @@ def _order_row(order: FoundOrder) -> tuple[str, ...]:
         _measured(order.amplitude_Nm, order.amplitude_standard_uncertainty_Nm),
         true_minus(f"{order.phase_rad:+.3f}") if order.is_steady else "wanders",
         true_minus(f"{order.evidence:.1f}"),
-        "yes, removed" if order.is_present else "no",
+        "yes" if order.is_present else "no",
     )
+
+
+def _torque_or_artefact(result: IdentifiedLog) -> Item:
+    headings = (
+        "Order",
+        "Decision",
+        "Torque's share",
+        "Torque (Nm)",
+        "Artefact (Nm)",
+        "By, and why",
+    )
+    text = (
+        "An order whose torque has a share above one half is real torque and kept, one below is "
+        "removed; one that is undecidable is removed, unless an earlier file keeps it. What the file "
+        "says stands in the table of orders under Ripple."
+    )
+    rows = tuple(_verdict_row(each) for each in result.judged.verdicts)
+    return Item("Torque or artefact", paragraphs=(text,), table=PlainTable(headings, rows))
+
+
+def _verdict_row(verdict: OrderVerdict) -> tuple[str, ...]:
+    share = verdict.share
+    return (
+        f"{verdict.order:g}",
+        verdict.decision,
+        _DASH if share is None else _measured(share.value, share.standard_uncertainty),
+        _measured_or_dash(verdict.torque_Nm, verdict.torque_standard_uncertainty_Nm),
+        _measured_or_dash(verdict.artefact_Nm, verdict.artefact_standard_uncertainty_Nm),
+        "; ".join(text for text in (verdict.basis, verdict.reason) if text) or _DASH,
+    )
+
+
+def _measured_or_dash(value: float | None, uncertainty: float | None) -> str:
+    return _DASH if value is None else _measured(value, uncertainty)
 
 
 def _cycles(result: IdentifiedLog) -> Item:

@@ -181,6 +181,8 @@ def head_sentences(log: FilteredLog, evidence: Evidence) -> tuple[str, str, str]
 
 
 def _on_ripple(log: FilteredLog, evidence: Evidence) -> str:
+    if evidence.lines and not evidence.removed:
+        return "No ripple is removed: the orders that are followed are kept, as real torque."
     if not evidence.removed:
         return (
             f"The motor makes {number_text(evidence.motor_turns)} turns here, too few in one "
