@@ -20,6 +20,11 @@ _SOURCES = {
     "told": "as told",
     "unknown": "not known",
 }
+_NOISE = {
+    "rest": "differences at rest",
+    "innovations": "the filter's innovations: an upper bound",
+    "standard": "not told: a share of the rated torque",
+}
 _FULL_SCALE = {
     "option": "as told",
     "joint file": "as told in the joint file",
@@ -84,9 +89,12 @@ def _quantities(result: IdentifiedLog) -> list[tuple[str, str, str]]:
         chosen = "likelihood, 3 to 160 turns tried"
         if not settings.is_chosen:
             chosen = "standard: too little motion to choose"
-        named = [name for name in ("load", "speed") if getattr(settings, f"{name}_terms")]
-        terms = " and ".join(named) or "none"
-    tried = "load and speed tried by likelihood, from 300 motor turns on; direction not tried"
+        interval = settings.memory_interval_turns
+        if interval is not None and interval[0] != interval[1]:
+            memory += f" ({interval[0]:g} to {interval[1]:g} do as well)"
+        terms = str(settings.terms)
+    tried = "load, speed and direction, tried by likelihood where there are turns enough"
+    noise = result.ripple.noise
     survey = result.survey
     return [
         ("ratio R", ratio, _SOURCES.get(gearing.source, gearing.source)),
@@ -99,11 +107,11 @@ def _quantities(result: IdentifiedLog) -> list[tuple[str, str, str]]:
         ("delay of the torque behind the angle", delay, delay_source),
         (
             "noise of one sample",
-            f"{number_text(ripple.noise_Nm)} Nm",
-            "differences at rest, or see below",
+            f"{_measured(noise.noise_Nm, noise.standard_uncertainty_Nm)} Nm",
+            _NOISE[noise.source],
         ),
         ("memory", memory, chosen),
-        ("terms in", terms, tried),
+        ("terms", terms, tried),
         (
             "rated torque",
             f"{result.rated_torque_Nm:g} Nm",
