@@ -92,7 +92,8 @@ def demo(*, out: Path = Path("demo"), json: bool = False) -> None:
         soft_wrap=True,
     )
     console.print(_job_table(main_job_table(finished.job)))
-    console.print(f"open {finished.page}", soft_wrap=True)
+    reports = ", ".join(str(out / name) for name in ("identified.html", "cleaned.html"))
+    console.print(f"open {finished.page}, {reports}", soft_wrap=True)
 
 
 def _job_table(table: PlainTable) -> Table:

@@ -15,6 +15,7 @@ from strainwave.report.demo_taghirad import taghirad_part
 from strainwave.report.demo_tuning import tuning_part
 from strainwave.report.figures_main_job import main_job_figure
 from strainwave.report.page import Item, Page, Part, PlainTable, Tile, all_comparisons, render
+from strainwave.report.recording import write_recording_report
 from strainwave.report.style import svg
 from strainwave.reproduce import (
     godler2000,
@@ -24,7 +25,7 @@ from strainwave.reproduce import (
 )
 from strainwave.reproduce.comparison import KINDS, tallies
 from strainwave.reproduce.tuning import tuning_study
-from strainwave.walkthrough.main_job import main_job
+from strainwave.walkthrough.main_job import FILTER_COMMAND, IDENTIFY_COMMAND, main_job
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -142,6 +143,15 @@ def write_demo(
     picture = folder / "before-and-after.svg"
     write_atomically(page, render(_page((*parts, every), compared)).encode())
     write_atomically(picture, svg(main_job_figure(job)).encode())
+    joint = job.identified.out
+    write_recording_report(
+        folder / "identified.html",
+        *job.of_identified,
+        IDENTIFY_COMMAND,
+        joint_path=joint,
+        identified=job.identified,
+    )
+    write_recording_report(folder / "cleaned.html", *job.of_work, FILTER_COMMAND, joint_path=joint)
     write_atomically(folder / "main-job.md", as_markdown(main_job_table(job)).encode())
     on_done()
     return DemoReport(page, picture, compared, job)

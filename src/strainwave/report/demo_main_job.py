@@ -34,8 +34,8 @@ def main_job_part(job: MainJob) -> Part:
         paragraphs=(
             "A simulated joint is recorded for 40 s of ordinary motion, its torque 2 ms later than "
             f"its angle. {IDENTIFY_COMMAND} finds out what there is to know of it.",
-            f"Another 20 s of work are then filtered: {FILTER_COMMAND}. The files are beside this "
-            "page.",
+            f"Another 20 s of work are then filtered: {FILTER_COMMAND}. Recordings, joint file, "
+            "clean torque and both reports, identified.html and cleaned.html, are beside this page.",
         ),
         items=(
             Item(title="What was identified", table=_identified(job)),

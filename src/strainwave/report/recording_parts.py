@@ -162,7 +162,7 @@ def _speed_part(evidence: Evidence) -> Part:
         figure=wide,
         narrow=narrow,
         caption=f"Amplitude against motor speed and order, from {int(speed_map.windows.sum())} "
-        f"windows of at least {number_text(speed_map.window_turns)} motor turns in {filled} bins of "
+        f"windows of at least {number_text(speed_map.window_turns)} motor turns in {filled} {'bin' if filled == 1 else 'bins'} of "
         "speed; grey where the recording has none, and where the rows are too far apart. The darkest "
         "colour stands for a three hundredth of the highest amplitude and all below. What lies "
         "level belongs to the angle; what bends with speed does not. Marks at the left: the orders "

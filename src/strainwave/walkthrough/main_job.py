@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 import pyarrow.csv
 
+from strainwave.evidence import filter_as_identified, filter_with_evidence
 from strainwave.records import Options, filter_log, parse_mapping
 from strainwave.records.identifying import identify_log
 from strainwave.walkthrough.recordings import (
@@ -30,21 +31,25 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from strainwave.evidence import Evidence
+    from strainwave.records.filtered_log import FilteredLog
     from strainwave.records.identified_log import IdentifiedLog
     from strainwave.simulate.results import Run
     from strainwave.walkthrough.recordings import Touch
 
 IDENTIFY_COMMAND: Final = (
     f"strainwave identify ordinary.csv --map {MAP} --angle-side motor --ratio {RATIO} "
-    f"--rated-torque {RATED_TORQUE_NM:g} --out joint.toml"
+    f"--rated-torque {RATED_TORQUE_NM:g} --out joint.toml --report identified.html"
 )
-FILTER_COMMAND: Final = "strainwave filter work.csv --joint joint.toml --out clean.csv"
+FILTER_COMMAND: Final = (
+    "strainwave filter work.csv --joint joint.toml --out clean.csv --report cleaned.html"
+)
 #: What is compared: the truth, the torque as recorded, the published filter, and this one.
 TRUE: Final = "true torque"
 MEASURED: Final = "as recorded"
 PUBLISHED: Final = "published filter (Taghirad & Bélanger 1999)"
 OURS: Final = "strainwave"
-_METHODS: Final = {PUBLISHED: "taghirad1999", OURS: None}
+_PUBLISHED_METHOD: Final = "taghirad1999"
 #: A touch is read over this time after its edge, and before it, s.
 _TOUCH_READ_S: Final = (0.02, 0.03)
 _BEFORE_TOUCH_S: Final = 0.1
@@ -86,6 +91,8 @@ class MainJob:
     ----------
     identified : IdentifiedLog
         What was found in the ordinary recording.
+    of_identified, of_work : tuple of FilteredLog and Evidence
+        What the reports of both commands show.
     time_s, true_Nm : numpy.ndarray
         Time and true torque of the recording of work, shape (rows,), s and Nm.
     torque_Nm : dict
@@ -95,6 +102,8 @@ class MainJob:
     """
 
     identified: IdentifiedLog
+    of_identified: tuple[FilteredLog, Evidence]
+    of_work: tuple[FilteredLog, Evidence]
     time_s: NDArray[np.float64]
     true_Nm: NDArray[np.float64]
     torque_Nm: dict[str, NDArray[np.float64]]
@@ -143,15 +152,29 @@ def main_job(folder: Path) -> MainJob:
         rated_torque_Nm=RATED_TORQUE_NM,
     )
     identified = identify_log(ordinary, joint_path, options, command=IDENTIFY_COMMAND)
+    out, published = folder / "clean.csv", folder / f"{_PUBLISHED_METHOD}.csv"
+    of_work = filter_with_evidence(work, out, Options(), joint_path=joint_path)
+    filter_log(work, published, joint_path=joint_path, method=_PUBLISHED_METHOD)
     true_Nm = run.truth.torque_without_ripple_Nm
-    torques = {TRUE: true_Nm, MEASURED: run.raw_torque_Nm}
-    for name, method in _METHODS.items():
-        out = folder / ("clean.csv" if method is None else f"{method}.csv")
-        out.unlink(missing_ok=True)
-        filter_log(work, out, joint_path=joint_path, method=method)
-        torques[name] = pyarrow.csv.read_csv(out)["torque_Nm"].to_numpy()
-    scores = tuple(_score(name, run, torque_Nm) for name, torque_Nm in torques.items())
-    return MainJob(identified, run.time_s, true_Nm, torques, scores)
+    torques = {
+        TRUE: true_Nm,
+        MEASURED: run.raw_torque_Nm,
+        PUBLISHED: _cleaned_Nm(published),
+        OURS: _cleaned_Nm(out),
+    }
+    return MainJob(
+        identified,
+        filter_as_identified(identified, options),
+        of_work,
+        run.time_s,
+        true_Nm,
+        torques,
+        tuple(_score(name, run, torque_Nm) for name, torque_Nm in torques.items()),
+    )
+
+
+def _cleaned_Nm(path: Path) -> NDArray[np.float64]:
+    return np.asarray(pyarrow.csv.read_csv(path)["torque_Nm"].to_numpy(), dtype=np.float64)
 
 
 def _score(name: str, run: Run, torque_Nm: NDArray[np.float64]) -> Score:
