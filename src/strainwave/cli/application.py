@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Final
 
 import cyclopts
 
+from strainwave.cli.calibrate import calibrate_app
 from strainwave.cli.demo import demo
 from strainwave.cli.fidelity import fidelity
 from strainwave.cli.filter import filter_command
@@ -32,6 +33,7 @@ app.command(demo)
 app.command(filter_command, name="filter")
 app.command(fidelity)
 app.command(identify_command, name="identify")
+app.command(calibrate_app)
 app.command(joint_app)
 
 
