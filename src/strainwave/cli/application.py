@@ -10,6 +10,7 @@ import cyclopts
 
 from strainwave.cli.calibrate import calibrate_app
 from strainwave.cli.demo import demo
+from strainwave.cli.design import design_app
 from strainwave.cli.fidelity import fidelity
 from strainwave.cli.filter import filter_command
 from strainwave.cli.identify import identify_command
@@ -34,6 +35,7 @@ app.command(filter_command, name="filter")
 app.command(fidelity)
 app.command(identify_command, name="identify")
 app.command(calibrate_app)
+app.command(design_app)
 app.command(joint_app)
 
 
