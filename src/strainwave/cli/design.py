@@ -281,7 +281,7 @@ def _print_sensitivities(console: Console, case: LayoutCase) -> None:
 def _print_comparison(console: Console, comparison: Comparison) -> None:
     from rich.table import Table
 
-    console.print(comparison.question, soft_wrap=True, markup=False)
+    console.print(f"{comparison.question} {comparison.verdict}", soft_wrap=True, markup=False)
     for answer in comparison.answers:
         console.print(f"  {answer}.", soft_wrap=True, markup=False)
     table = Table(

@@ -64,6 +64,7 @@ def as_dict(study: LayoutStudy, comparison: Comparison | None) -> dict[str, Any]
 def _comparison(comparison: Comparison) -> dict[str, Any]:
     return {
         "question": comparison.question,
+        "verdict": comparison.verdict,
         "answers": list(comparison.answers),
         "careless": _studies(comparison.careless, comparison.careless_studies),
         "careful": _studies(comparison.careful, comparison.careful_studies),

@@ -14,6 +14,8 @@ if TYPE_CHECKING:
     from strainwave.design.placement import Tolerances
 
 FEWEST_GAUGES: Final = 2
+#: Residuals closer than this are called the same; the wave is not known better.
+_ALIKE: Final = 1.1
 #: Layouts of each of the sixteen cases at most: 95th percentiles to about 1 %.
 MOST_TRIALS_EACH: Final = 20_000
 
@@ -120,6 +122,23 @@ class Comparison:
         return f"{self.few} careless gauges or {self.many} careful ones?"
 
     @property
+    def verdict(self) -> str:
+        """The answer in a few words: who leaves less at the 95th percentile.
+
+        Returns
+        -------
+        str
+            With equal gains and tuned, if they differ.
+        """
+        few = _of(self.careless_studies, self.few)
+        many = _of(self.careful_studies, self.many)
+        untuned = self._winner(few.untuned, many.untuned)
+        tuned = self._winner(few.tuned, many.tuned)
+        if untuned == tuned:
+            return f"{tuned}, tuned or not"
+        return f"{tuned} if tuned, else {untuned}"
+
+    @property
     def answers(self) -> tuple[str, str, str, str]:
         """The answer, with its numbers: residuals at the 95th percentile.
 
@@ -138,16 +157,20 @@ class Comparison:
             self._replacement(many.untuned.residual_FS[95]),
         )
 
+    def _winner(self, few: Distribution, many: Distribution) -> str:
+        left_FS = (few.residual_FS[95], many.residual_FS[95])
+        if max(left_FS) < _ALIKE * min(left_FS):
+            return "either"
+        return f"{self.few} careless" if left_FS[0] < left_FS[1] else f"{self.many} careful"
+
     def _against(self, few: Distribution, many: Distribution) -> str:
-        left = (few.residual_FS[95], many.residual_FS[95])
-        ratio = max(left) / max(min(left), 1e-30)
-        if ratio < 1.1:
-            verdict = "about the same"
-        elif left[0] < left[1]:
-            verdict = f"{self.few} careless leave {ratio:.2g} times less"
-        else:
-            verdict = f"{self.many} careful leave {ratio:.2g} times less"
-        return f"{left[0]:.2g} against {left[1]:.2g} %FS, {verdict}"
+        left_FS = (few.residual_FS[95], many.residual_FS[95])
+        ratio = max(left_FS) / max(min(left_FS), 1e-30)
+        winner = self._winner(few, many)
+        verdict = (
+            "about the same" if winner == "either" else f"{winner} leave {ratio:.2g} times less"
+        )
+        return f"{left_FS[0]:.2g} against {left_FS[1]:.2g} %FS, {verdict}"
 
     def _replacement(self, left_FS: float) -> str:
         for study in self.careless_studies:

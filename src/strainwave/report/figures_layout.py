@@ -38,7 +38,11 @@ def layout_figure(comparison: Comparison) -> Figure:
     with figure_style():
         figure = new_figure(7.4)
         figure.suptitle(
-            comparison.question, fontsize=13, fontweight="bold", x=0.01, horizontalalignment="left"
+            f"{comparison.question} {comparison.verdict}",
+            fontsize=13,
+            fontweight="bold",
+            x=0.01,
+            horizontalalignment="left",
         )
         panels = figure.subplots(2, 1, sharex=True, sharey=True)
         titles = (untuned, f"{tuned}.\n{replacement}")
