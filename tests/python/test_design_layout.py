@@ -20,7 +20,7 @@ from strainwave.design.layout import (
     study_layout,
 )
 from strainwave.design.many_gains import gains_of_layouts, noise_factors
-from strainwave.design.placement import Tolerances, Wave
+from strainwave.design.placement import Tolerances, Wave, draw_errors, gauge_signals
 from strainwave.design.quantisation import Quantisation
 from strainwave.errors import InputError
 
@@ -182,6 +182,8 @@ def test_measurement_error_alone() -> None:
     for percentile, value in found.tuned.residual_FS.items():
         expected = spread * np.sqrt(-2 * np.log(1 - percentile / 100))
         assert value == pytest.approx(expected, rel=0.03)
+    assert found.parts_FS["up_to_N_solved"] == found.tuned.residual_FS
+    assert found.parts_FS["above_N"] == {5: 0.0, 50: 0.0, 95: 0.0}
     exact = study_layout(replace(case, measurement_error_FS=0.0), 0.5, 1000)
     assert exact.tuned.residual_FS[95] < 1e-6
 
@@ -219,6 +221,50 @@ def test_lost_gauge() -> None:
     lost = study_layout(ideal, 0.5, 10).lost_untuned
     assert lost is not None
     assert lost.residual_FS[50] == pytest.approx(60.0 / 3)
+
+
+def of_one_layout(phasors: np.ndarray, torque: np.ndarray, harmonics: int) -> tuple[float, ...]:
+    """Residual, its part above N, and noise factor of one layout, by the solver for one."""
+    matrix = np.empty((2 * harmonics, len(torque)))
+    matrix[0::2], matrix[1::2] = phasors[:harmonics].real, phasors[:harmonics].imag
+    found = compensating_gains(matrix, most_noise=np.inf)
+    left = np.abs(phasors @ found.gains) / (found.gains @ torque)
+    return left.sum(), left[harmonics:].sum(), found.noise_factor
+
+
+@pytest.mark.parametrize(("gauges", "harmonics"), [(4, 1), (6, 2), (5, 2)])
+def test_every_number_layout_by_layout(gauges: int, harmonics: int) -> None:
+    """The same layouts, one after the other."""
+    layouts = 101
+    tolerances = Tolerances(4.0, 0.1, 3.0, 0.1, 0.5, 2.0)
+    case = LayoutCase(
+        gauges, harmonics, tolerances, measurement_error_FS=0.0, lost_gauge=True, radius_mm=20.0
+    )
+    study = study_layout(case, 0.5, layouts, seed=21)
+    shape = (layouts, len(case.wave.amplitudes_FS), gauges)
+    errors = draw_errors(np.random.default_rng(21), tolerances, 20.0, shape)
+    torque, phasors = gauge_signals(case.wave, errors)
+    whole, lost, untuned = [], [], []
+    for seen, signal in zip(phasors, torque, strict=True):
+        whole.append(of_one_layout(seen, signal, harmonics))
+        others = [np.delete(np.arange(gauges), j) for j in range(gauges)]
+        each = [of_one_layout(seen[:, kept], signal[kept], harmonics) for kept in others]
+        lost.append(np.max(each, axis=0))
+        equal = [np.abs(seen[:, kept].sum(axis=1)).sum() / signal[kept].sum() for kept in others]
+        untuned.append(max(equal))
+    assert study.lost_tuned is not None
+    assert study.lost_untuned is not None
+    for values, found in (
+        (np.array(whole)[:, 0], study.tuned.residual_FS),
+        (np.array(whole)[:, 1], study.parts_FS["above_N"]),
+        (np.array(whole)[:, 2], study.tuned.noise_factor),
+        (np.array(lost)[:, 0], study.lost_tuned.residual_FS),
+        (np.array(lost)[:, 2], study.lost_tuned.noise_factor),
+        (np.array(untuned), study.lost_untuned.residual_FS),
+    ):
+        # Of 101 values the percentiles 5, 50 and 95 are the 6th, the 51st and the 96th.
+        expected = np.sort(values)[[5, 50, 95]]
+        assert list(found.values()) == pytest.approx(list(expected), rel=1e-4)
 
 
 def test_refused_layouts_count_as_failed() -> None:
@@ -319,20 +365,29 @@ def test_steps_are_the_nearest(gains: list[float], step: float) -> None:
     assert np.all(np.abs(found - given_gains) <= step / 2 * (1 + 1e-9) + 1e-9)
 
 
+#: IEC 60063, two digits; the series of three digits is geometric.
+E24 = "10 11 12 13 15 16 18 20 22 24 27 30 33 36 39 43 47 51 56 62 68 75 82 91"
+SERIES = {
+    "e24": np.array(E24.split(), dtype=float) / 10,
+    "E96": np.round(10 ** (np.arange(96) / 96), 2),
+}
+
+
+@pytest.mark.parametrize("name", list(SERIES))
 @settings(max_examples=50, deadline=None)
 @given(gain=st.floats(1e-3, 1e3), sign=st.sampled_from([-1.0, 1.0]))
-def test_resistors_of_a_series_are_the_nearest(gain: float, sign: float) -> None:
-    for name, values in (("E96", np.round(10 ** (np.arange(96) / 96), 2)), ("e24", None)):
-        found = float(Quantisation.of_text(name).apply(np.array([sign * gain]))[0])
-        assert found * sign > 0
-        decades = 10.0 ** np.arange(-4, 5)
-        if values is not None:
-            everything = np.outer(decades, values).ravel()
-            best = np.abs(np.log(everything / gain)).min()
-            assert abs(np.log(abs(found) / gain)) == pytest.approx(best, abs=1e-9)
-        else:
-            # IEC 60063: 5 % resistors lie at most 1.12 apart but for 1.3 to 1.5, 1.155.
-            assert abs(np.log(abs(found) / gain)) <= np.log(1.155) / 2
+def test_resistors_of_a_series_are_the_nearest(name: str, gain: float, sign: float) -> None:
+    found = float(Quantisation.of_text(name).apply(np.array([sign * gain]))[0])
+    everything = np.outer(10.0 ** np.arange(-4, 5), SERIES[name]).ravel()
+    best = np.abs(np.log(everything / gain)).min()
+    assert abs(np.log(found * sign / gain)) == pytest.approx(best, abs=1e-9)
+
+
+@pytest.mark.parametrize("name", list(SERIES))
+def test_values_of_a_series_stay(name: str) -> None:
+    for decade in (0.01, 1.0, 100.0):
+        gains = decade * SERIES[name]
+        assert Quantisation.of_text(name).apply(gains) == pytest.approx(gains, rel=1e-12)
 
 
 @pytest.mark.parametrize(
