@@ -10,8 +10,9 @@ from xml.etree import ElementTree as ET
 import pytest
 
 from helpers.log_files import command
+from strainwave.design.case import LayoutCase
 from strainwave.design.comparison import CAREFUL, CARELESS, Care, compare_gauge_counts
-from strainwave.design.layout import LayoutCase, study_layout
+from strainwave.design.layout import study_layout
 from strainwave.design.placement import Tolerances, Wave
 from strainwave.errors import InputError
 from strainwave.report.figures_layout import layout_figure

@@ -12,13 +12,8 @@ from hypothesis import strategies as st
 
 from strainwave.calibrate.fluctuation import compensation_conditions, equally_spaced_positions_rad
 from strainwave.calibrate.gains import compensating_gains
-from strainwave.design.layout import (
-    LayoutCase,
-    LayoutStudy,
-    assumptions,
-    remarks,
-    study_layout,
-)
+from strainwave.design.case import LayoutCase, assumptions, remarks
+from strainwave.design.layout import LayoutStudy, study_layout
 from strainwave.design.many_gains import gains_of_layouts, noise_factors
 from strainwave.design.placement import Tolerances, Wave, draw_errors, gauge_signals
 from strainwave.design.quantisation import Quantisation

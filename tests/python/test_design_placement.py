@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from strainwave import _core
 from strainwave.calibrate.fluctuation import compensation_conditions, equally_spaced_positions_rad
-from strainwave.design.layout import LayoutCase
+from strainwave.design.case import LayoutCase
 from strainwave.design.placement import (
     GaugeErrors,
     Tolerances,

@@ -12,8 +12,9 @@ from strainwave.cli.whole import Whole
 if TYPE_CHECKING:
     from rich.console import Console
 
+    from strainwave.design.case import LayoutCase
     from strainwave.design.comparison import Comparison
-    from strainwave.design.layout import LayoutCase, LayoutStudy
+    from strainwave.design.layout import LayoutStudy
 
 design_app = cyclopts.App(
     name="design", help="Decide how many gauges, where, and how carefully they are bonded."
@@ -111,9 +112,10 @@ def layout(
     """
     from strainwave.cli.design_result import as_dict
     from strainwave.cli.output import print_json, result_console
+    from strainwave.design.case import LayoutCase
     from strainwave.design.checks import numbers_of_text
     from strainwave.design.comparison import Care, compare_gauge_counts
-    from strainwave.design.layout import LayoutCase, study_layout
+    from strainwave.design.layout import study_layout
     from strainwave.design.placement import Tolerances, Wave
     from strainwave.design.quantisation import Quantisation
 
@@ -189,7 +191,7 @@ def _write_figure(comparison: Comparison, out: Path) -> None:
 def _print_study(console: Console, study: LayoutStudy) -> None:
     from rich.table import Table
 
-    from strainwave.design.layout import assumptions, remarks
+    from strainwave.design.case import assumptions, remarks
 
     case = study.case
     console.print(

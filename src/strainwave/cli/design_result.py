@@ -24,7 +24,7 @@ def as_dict(study: LayoutStudy, comparison: Comparison | None) -> dict[str, Any]
     dict
         As docs/reference/design-layout-command.md lists it.
     """
-    from strainwave.design.layout import assumptions, remarks
+    from strainwave.design.case import assumptions, remarks
     from strainwave.design.sensitivity import sensitivities
 
     case = study.case

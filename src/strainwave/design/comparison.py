@@ -5,15 +5,16 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Final
 
+from strainwave.design.case import FEWEST_GAUGES, MOST_GAUGES
 from strainwave.design.checks import count_within, number_within, numbers_of_text
-from strainwave.design.layout import MOST_GAUGES, study_layout
+from strainwave.design.layout import study_layout
 from strainwave.errors import ConfigurationError
 
 if TYPE_CHECKING:
-    from strainwave.design.layout import Distribution, LayoutCase, LayoutStudy
+    from strainwave.design.case import LayoutCase
+    from strainwave.design.layout import Distribution, LayoutStudy
     from strainwave.design.placement import Tolerances
 
-FEWEST_GAUGES: Final = 2
 #: Residuals closer than this are called the same; the wave is not known better.
 _ALIKE: Final = 1.1
 #: Layouts of each of the sixteen cases at most: 95th percentiles to about 1 %.

@@ -13,7 +13,7 @@ import numpy as np
 from strainwave.design.placement import GaugeErrors, gauge_signals
 
 if TYPE_CHECKING:
-    from strainwave.design.layout import LayoutCase
+    from strainwave.design.case import LayoutCase
 
 #: Errors of which there is a row, with the unit that is put in; see `Sensitivity`.
 _ROWS: Final = (
