@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Final
 import cyclopts
 
 from strainwave.cli.calibrate import calibrate_app
+from strainwave.cli.calibrate_plan import calibrate_plan
+from strainwave.cli.calibrate_torque import calibrate_torque_command
 from strainwave.cli.demo import demo
 from strainwave.cli.design import design_app
 from strainwave.cli.fidelity import fidelity
@@ -34,6 +36,8 @@ app.command(demo)
 app.command(filter_command, name="filter")
 app.command(fidelity)
 app.command(identify_command, name="identify")
+calibrate_app.command(calibrate_torque_command, name="torque")
+calibrate_app.command(calibrate_plan, name="plan")
 app.command(calibrate_app)
 app.command(design_app)
 app.command(joint_app)
