@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 HIGHEST_ORDER: Final = 5
 #: A higher order has to predict experiments left out better, at this one-sided level.
 SIGNIFICANCE: Final = 0.05
+#: And by this share: what a loop leaves of itself in the mean is significant and means nothing.
+LEAST_IMPROVEMENT: Final = 0.05
 _MOST_ROUNDS: Final = 60
 
 
@@ -88,8 +90,8 @@ def linearise(
     """Choose the order of the polynomial by leaving out one experiment after another.
 
     A higher order is taken where it predicts the experiments left out better than the best lower
-    one does: a paired t-test over the experiments at the level `SIGNIFICANCE`. Rows of one series
-    share their hysteresis, so that tests which take rows for independent would see curvature in it.
+    one does: by `LEAST_IMPROVEMENT` of the error, and in a paired t-test over the experiments at
+    the level `SIGNIFICANCE`. Rows of one series share their hysteresis, so that tests which take rows for independent would see curvature in it.
 
     Parameters
     ----------
@@ -120,7 +122,8 @@ def linearise(
         p_value = float("nan")
         if order > 1:
             p_value = _paired(squares[best] - errors, float(squares[best].mean()))
-            best = order if p_value < SIGNIFICANCE else best
+            share = 1.0 - float(np.sqrt(errors.mean() / max(squares[best].mean(), 1e-300)))
+            best = order if p_value < SIGNIFICANCE and share > LEAST_IMPROVEMENT else best
         error_Nm = full_scale_Nm * float(np.sqrt(errors.mean()))
         evidence.append(OrderEvidence(order, error_Nm, p_value))
     curve = normalised.curve(best)

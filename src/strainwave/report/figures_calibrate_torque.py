@@ -40,7 +40,11 @@ def torque_calibration_figure(fit: TorqueFit) -> Figure:
         if count <= _MOST_NAMED:
             handles, labels = above.get_legend_handles_labels()
             figure.legend(
-                handles, labels, loc="outside lower center", ncols=min(6, count + 3), title=None
+                handles,
+                labels,
+                loc="outside lower center",
+                ncols=min(6, count + 3),
+                title="experiment",
             )
         return figure
 
