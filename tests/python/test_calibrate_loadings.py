@@ -112,15 +112,30 @@ def test_loads_that_determine_nothing_are_refused() -> None:
 
 def test_variance_components_are_those_of_the_groups() -> None:
     rng = np.random.default_rng(3)
-    within, between = [], []
-    for _ in range(400):
+    within, between, covered = [], [], []
+    for _ in range(1000):
         groups = np.repeat(np.arange(6), 3)
         gains = 5.0 * (1 + 0.02 * rng.normal(size=6)[groups] + 0.01 * rng.normal(size=18))
         found = variance_components(gains, groups.tolist())
         assert found is not None
         within.append(found.within**2)
         between.append(found.between**2)
+        of_groups = found.of_groups
+        reach = 2.5706 * of_groups.standard_uncertainty * of_groups.gain_Nm_per_V
+        covered.append(abs(of_groups.gain_Nm_per_V - 5.0) <= reach)
+    assert 0.93 < np.mean(covered) < 0.97
     assert np.sqrt(np.mean(within)) == pytest.approx(0.01, rel=0.04)
     assert np.sqrt(np.mean(between)) == pytest.approx(0.02, rel=0.06)
     assert variance_components([1.0, 2.0], ["a", "b"]) is None
     assert variance_components([1.0, 2.0], ["a", "a"]) is None
+
+
+def test_a_slow_sweep_has_sides_and_loads_too() -> None:
+    one_way = np.linspace(0.0, 40.0, 20_001)
+    loads = np.concatenate([one_way, one_way[::-1]])
+    found = experiments(Truth(hysteresis=0.01), count=1, loads=loads)
+    assert 480 <= len(np.unique(found.levels())) <= 502
+    assert found.path[300] == 1
+    assert found.path[-300] == -1
+    errors = series_errors(found, _lines(found))
+    assert errors.hysteresis_Nm[0] / FULL_SCALE_NM == pytest.approx(0.01, rel=0.03)

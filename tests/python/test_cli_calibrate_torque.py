@@ -59,6 +59,7 @@ def test_table_1_of_taghirad_and_belanger(tmp_path: Path, call: Call) -> None:
     assert "locked at 4 positions, and 5 tell 2 harmonics" in warned
     assert "27 % of harmonic 1" in warned
     assert "the drift of the gain with temperature is not told from none" in warned
+    assert "made at 4 positions, and gains scatter by 2.1 % between positions" in warned
     assert "one direction" not in warned
     joint = read_joint(tmp_path / "table1.toml").joint
     assert joint.torque_calibration is not None
@@ -262,6 +263,18 @@ def test_warnings(tmp_path: Path, call: Call, make, mapping, options, words: str
     ended = _run(call, loads, *options, "--json", mapping=mapping)
     assert ended.code == 0
     assert any(words in warning for warning in ended.result["warnings"])
+
+
+def test_two_readings_have_a_gain_and_no_uncertainty(tmp_path: Path, call: Call) -> None:
+    loads = table(tmp_path / "loads.csv", experiments(count=1, loads=[0.0, 40.0]))
+    found = _run(call, loads, "--json").result
+    assert found["gain_Nm_per_V"] == pytest.approx(GAIN, rel=1e-9)
+    for key in ("gain_standard_uncertainty", "consistency", "prediction_interval_95"):
+        assert found[key] is None
+    out = tmp_path / "other.toml"
+    ended = call("calibrate", "torque", loads, "--map", MAP, "--out", out)
+    assert "standard uncertainty not told" in ended.out
+    assert "uncertainty_Nm_per_V" not in out.read_text(encoding="utf-8")
 
 
 def test_outliers_are_named_by_row_and_experiment(tmp_path: Path, call: Call) -> None:

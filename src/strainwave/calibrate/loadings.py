@@ -85,9 +85,15 @@ class Loadings:
             of the largest are one. Shape (rows,).
         """
         order = np.argsort(self.load_Nm, kind="stable")
-        steps = np.diff(self.load_Nm[order]) > SAME_LOAD * self.largest_load_Nm
+        ordered = self.load_Nm[order]
+        width = SAME_LOAD * self.largest_load_Nm
         numbers = np.empty(len(self), np.intp)
-        numbers[order] = np.concatenate(([0], np.cumsum(steps)))
+        begin = level = 0
+        # Counted from the first of each level: loads of a slow sweep would hang together else.
+        while begin < len(ordered):
+            end = int(np.searchsorted(ordered, ordered[begin] + width, "right"))
+            numbers[order[begin:end]] = level
+            begin, level = end, level + 1
         return numbers
 
     def with_voltage(self, voltage_V: NDArray[np.float64]) -> Loadings:
@@ -153,22 +159,32 @@ def paths(
     numpy.ndarray
         1 from below, -1 from above, 0 not known; shape (rows,).
     """
-    found = np.zeros(len(load_Nm), np.int8)
-    sense, previous, before = 0, 0, None
     smallest = SAME_LOAD * float(np.max(np.abs(load_Nm), initial=0.0))
-    for row, load in enumerate(load_Nm):
-        told = 0 if increasing is None else int(increasing[row])
-        is_zero = abs(load) <= smallest
-        if told and not is_zero:
-            previous = told * int(np.sign(load))
-        elif told or increasing is not None:
+    if increasing is None:
+        return _paths_by_order(load_Nm, smallest)
+    found = np.zeros(len(load_Nm), np.int8)
+    sense = 0
+    for row, (load, told) in enumerate(zip(load_Nm, increasing, strict=True)):
+        if abs(load) > smallest:
+            sense = int(np.sign(load))
+            found[row] = told * sense
+        elif told < 0:
             # A zero reading after weights of one direction were taken off.
-            previous = -sense if told <= 0 else 0
-        elif before is not None and abs(load - before) > smallest:
-            previous = 1 if load > before else -1
-        found[row] = previous
-        sense = int(np.sign(load)) if not is_zero else sense
-        before = load
+            found[row] = -sense
+    return found
+
+
+def _paths_by_order(load_Nm: NDArray[np.float64], smallest: float) -> NDArray[np.int8]:
+    found = np.zeros(len(load_Nm), np.int8)
+    path, farthest = 0, load_Nm[0]
+    for row, load in enumerate(load_Nm):
+        # A turn counts once it is larger than what is the same load; a slow sweep turns too.
+        if abs(load - farthest) > smallest:
+            path = 1 if load > farthest else -1
+            farthest = load
+        elif path * (load - farthest) > 0:
+            farthest = load
+        found[row] = path
     return found
 
 

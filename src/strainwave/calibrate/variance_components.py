@@ -6,6 +6,9 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+from scipy import stats
+
+from strainwave.calibrate.torque import Consistency, consistency
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -26,11 +29,18 @@ class VarianceComponents:
         the groups scatter no more than their members.
     groups : int
         Number of groups.
+    p_value : float
+        Of the F-test that the groups scatter no more than their members.
+    of_groups : Consistency
+        What the means of the groups say of the gain, one of each group: the honest statement where
+        groups differ, because members of one group are no independent experiments then.
     """
 
     within: float
     between: float
     groups: int
+    p_value: float
+    of_groups: Consistency
 
 
 def variance_components(gains: ArrayLike, groups: Sequence[object]) -> VarianceComponents | None:
@@ -63,4 +73,6 @@ def variance_components(gains: ArrayLike, groups: Sequence[object]) -> VarianceC
         float(np.sqrt(within)) / abs(mean),
         float(np.sqrt(max(0.0, (between - within) / typical))) / abs(mean),
         number,
+        float(stats.f.sf(between / within, number - 1, count - number)) if within > 0 else 0.0,
+        consistency(means),
     )

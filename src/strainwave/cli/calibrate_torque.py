@@ -143,8 +143,10 @@ def _row(name: str, value: str) -> str:
 
 def _gain(fit: TorqueFit) -> Iterator[str]:
     gain, u = fit.gain_Nm_per_V, fit.gain_budget.combined
-    relative = 100 * u / abs(gain)
-    yield _row("gain", f"{gain:.5g} Nm/V, standard uncertainty {u:.2g} Nm/V ({relative:.2g} %)")
+    known = (
+        f"{u:.2g} Nm/V ({100 * u / abs(gain):.2g} %)" if fit.gain_budget.components else "not told"
+    )
+    yield _row("gain", f"{gain:.5g} Nm/V, standard uncertainty {known}")
     yield _row("zero", f"{fit.zero_V:.4g} V")
     scatter = fit.scatter
     if scatter is not None:
@@ -222,7 +224,9 @@ def _drift(fit: TorqueFit) -> Iterator[str]:
             yield _row(
                 what,
                 f"gain scatters by {100 * found.within:.2g} % within and {100 * found.between:.2g} "
-                f"% between {found.groups}",
+                f"% between {found.groups}; by their means u = "
+                f"{100 * found.of_groups.standard_uncertainty:.2g} %, another one "
+                f"+-{100 * found.of_groups.prediction_95:.2g} %",
             )
     for side in fit.crosstalk:
         told = crosstalk_dict(fit, side)
@@ -236,6 +240,8 @@ def _drift(fit: TorqueFit) -> Iterator[str]:
 def _budget(of: str, budget: Budget, unit: str) -> Iterator[str]:
     import math
 
+    if not budget.components:
+        return
     yield f"uncertainty of the {of}"
     for part in budget.components:
         freedom = part.degrees_of_freedom

@@ -167,7 +167,9 @@ class TorqueCalibrated:
         values: dict[str, Any] = {
             "gain_Nm_per_V": fit.gain_Nm_per_V,
             "zero_V": fit.zero_V,
-            "gain_standard_uncertainty": fit.gain_budget.combined,
+            "gain_standard_uncertainty": fit.gain_budget.combined
+            if fit.gain_budget.components
+            else None,
             "consistency": None if scatter is None else scatter.consistency,
             "consistency_interval_95": None
             if scatter is None

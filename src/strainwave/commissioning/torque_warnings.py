@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 LARGEST_ALIAS: Final = 0.05
 FEWEST_EXPERIMENTS: Final = 4
 _HALF: Final = 0.5
+_LEVEL: Final = 0.05
 _LISTED: Final = 5
 
 
@@ -140,6 +141,16 @@ def _experiments(fit: TorqueFit) -> Iterator[str]:
             f"between {100 * low:.2g} and {100 * high:.2g} % with 95 % confidence; "
             f"make {FEWEST_EXPERIMENTS} or more"
         )
+    for what, found in (("position", fit.over_positions), ("mounting", fit.over_mountings)):
+        if found is not None and found.p_value < _LEVEL:
+            of_groups = found.of_groups
+            yield (
+                f"the {count} experiments were made at {found.groups} {what}s, and gains scatter "
+                f"by {100 * found.between:.2g} % between {what}s and {100 * found.within:.2g} % "
+                f"within: counted by {what}s, the gain has a standard uncertainty of "
+                f"{100 * of_groups.standard_uncertainty:.2g} %, and another {what} may differ by "
+                f"{100 * of_groups.prediction_95:.2g} % (95 %)"
+            )
 
 
 def _positions(fit: TorqueFit, harmonics: int) -> Iterator[str]:
