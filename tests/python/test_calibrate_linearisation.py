@@ -39,7 +39,7 @@ def test_noise_and_hysteresis_are_no_curve() -> None:
     for seed in range(60):
         truth = Truth(gain_scatter=0.02, hysteresis=0.005, noise_V=0.01)
         chosen += len(_linearise(experiments(truth, count=5, seed=seed)).curve.coefficients) > 0
-    assert chosen <= 5
+    assert chosen <= 2
 
 
 def test_a_curve_beside_noise_is_found_nearly_always() -> None:
@@ -47,7 +47,7 @@ def test_a_curve_beside_noise_is_found_nearly_always() -> None:
     for seed in range(20):
         truth = Truth(gain_scatter=0.02, hysteresis=0.005, noise_V=0.01, cubic=-0.02)
         found += len(_linearise(experiments(truth, count=8, seed=seed)).curve.coefficients) >= 2
-    assert found >= 18
+    assert found >= 19
 
 
 def test_two_experiments_are_no_evidence() -> None:

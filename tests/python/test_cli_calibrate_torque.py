@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from helpers.joint_sections import PROVENANCE, gear
+from helpers.joint_sections import PROVENANCE, gauges, gear
 from helpers.load_tables import FULL_SCALE_NM, GAIN, MAP, Truth, experiments, series, table
 from helpers.log_files import command, write_csv, write_parquet
 from strainwave.joint import new_joint, read_joint, write_joint
@@ -196,6 +196,45 @@ def test_side_loads_are_reported_in_percent_and_per_newton(tmp_path: Path, call:
     assert force["sensitivity"] == pytest.approx(1e-4 * GAIN, rel=1e-6)
     assert tilt["sensitivity"] == pytest.approx(100 * 0.003 * GAIN, rel=1e-6)
     assert found["gain_Nm_per_V"] == pytest.approx(GAIN, rel=1e-9)
+    written = read_joint(tmp_path / "loads.toml").joint.torque_calibration
+    assert written is not None
+    assert written.axial_force_sensitivity_Nm_per_N == force["sensitivity"]
+    assert written.tilting_moment_sensitivity == pytest.approx(tilt["sensitivity"] / 100)
+    assert written.radial_force_sensitivity_Nm_per_N is None
+
+
+def test_converter_codes_are_read_by_the_joint_file(tmp_path: Path, call: Call) -> None:
+    base = experiments(Truth(gain_scatter=0.01), 5)
+    old, out = tmp_path / "old.toml", tmp_path / "new.toml"
+    joint = new_joint("elbow")
+    converter = {"converter_bits": 16, "converter_minimum_V": -10.0, "converter_maximum_V": 10.0}
+    joint.set_section("gauges", gauges(1, **converter), PROVENANCE)
+    write_joint(joint, old)
+    step_V = 20.0 / 65536
+    # Means of codes have fractions.
+    codes = ((base.voltage_V + 10.0) / step_V).tolist()
+    loads = table(tmp_path / "loads.csv", base, code=codes)
+    words = ("calibrate", "torque", loads, "--joint", old, "--out", out, "--json")
+    found = call(*words, "--map", "load=load_Nm,voltage=code:counts,experiment=run").result
+    volts = _run(call, loads, "--json").result
+    assert found["gain_Nm_per_V"] == pytest.approx(volts["gain_Nm_per_V"], rel=2e-4)
+    assert found["consistency"] == pytest.approx(volts["consistency"], rel=1e-6)
+
+
+def test_mountings_are_groups(tmp_path: Path, call: Call) -> None:
+    base = experiments(Truth(noise_V=0.001), 6, 2)
+    shift = np.array([0.0, 0.0, 0.03, 0.03, -0.02, -0.02])[base.experiment]
+    names = np.array(["a", "a", "b", "b", "c", "c"])[base.experiment].tolist()
+    moved = base.with_voltage(0.05 + (base.voltage_V - 0.05) * (1 + shift))
+    loads = table(tmp_path / "loads.csv", moved, m=names)
+    found = _run(call, loads, "--json", mapping=(MAP, "mounting=m")).result
+    scatter = found["mountings"]["gain_scatter"]
+    assert scatter["groups"] == 3
+    assert scatter["between"] == pytest.approx(np.std([0, 0.03, -0.02], ddof=1), rel=0.05)
+    assert scatter["within"] < 0.002
+    assert found["reproducibility_FS"] > 4.5
+    assert found["repeatability_FS"] < 0.2
+    assert any("made at 3 mountings" in warning for warning in found["warnings"])
 
 
 def test_parquet_and_units_say_the_same(tmp_path: Path, call: Call) -> None:

@@ -28,6 +28,7 @@ SUFFIX_UNITS = {
     "_Nm_per_sqrt_s": "Nm/sqrt(s)",
     "_rad_s": "rad/s",
     "_Nm_per_V": "Nm/V",
+    "_Nm_per_N": "Nm/N",
     "_V_per_K": "V/K",
     "_per_K": "1/K",
     "_kg_m2": "kg m^2",

@@ -33,6 +33,12 @@ _CONFIGURATIONS: dict[str, str] = {
     "circular-spline-fixed": "fixed_circular_spline",
 }
 
+_SENSITIVITIES = {
+    "axial-force": "axial_force_sensitivity_Nm_per_N",
+    "radial-force": "radial_force_sensitivity_Nm_per_N",
+    "tilting-moment": "tilting_moment_sensitivity",
+}
+
 
 @dataclass(frozen=True)
 class TorqueOptions:
@@ -252,6 +258,8 @@ def _values(fit: TorqueFit) -> dict[str, Any]:
         values["gain_standard_uncertainty_Nm_per_V"] = fit.gain_budget.combined
     if fit.scatter is not None:
         values["consistency"] = abs(fit.scatter.consistency)
+    for side in fit.crosstalk:
+        values[_SENSITIVITIES[side.name]] = fit.gain_Nm_per_V * side.sensitivity_V
     if fit.is_rated:
         for key, errors in (
             ("hysteresis", fit.errors.hysteresis_Nm),

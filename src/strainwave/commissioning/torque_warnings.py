@@ -240,6 +240,6 @@ def _side_loads(fit: TorqueFit) -> Iterator[str]:
     if fit.crosstalk:
         names = " and ".join(each.name for each in fit.crosstalk)
         yield (
-            f"the effect of {names} is taken out of the gain and not written to the joint file: "
-            "take sensitivity times side load from the torque where it is measured in use"
+            f"gain and zero hold without {names}: in use it adds to the torque, unless sensitivity "
+            "times side load is subtracted where it is measured"
         )

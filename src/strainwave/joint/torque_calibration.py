@@ -14,7 +14,8 @@ class TorqueCalibration(Section):
     """Gain, zero and linearisation of the sensor, and how well they are known.
 
     With u = gain_Nm_per_V (voltage - zero_V) and FS = gear.rated_torque_Nm,
-    torque = u + FS sum over n = 2 to 5 of c_n (u / FS)^n, where the c_n are `linearisation`.
+    torque = u + FS sum over n = 2 to 5 of c_n (u / FS)^n, where the c_n are `linearisation`. Side
+    loads are not among what it takes: where they are measured, the sensitivities say what they add.
     """
 
     gain_Nm_per_V: Annotated[float, Unit("Nm/V")] = Field(
@@ -53,6 +54,19 @@ class TorqueCalibration(Section):
     )
     highest_torque_Nm: Annotated[float, Unit("Nm")] | None = Field(
         default=None, description="Highest torque applied during calibration"
+    )
+
+    axial_force_sensitivity_Nm_per_N: Annotated[float, Unit("Nm/N")] | None = Field(
+        default=None,
+        description="Torque shown per axial force; sensitivity times force is to be subtracted",
+    )
+    radial_force_sensitivity_Nm_per_N: Annotated[float, Unit("Nm/N")] | None = Field(
+        default=None,
+        description="Torque shown per radial force; sensitivity times force is to be subtracted",
+    )
+    tilting_moment_sensitivity: Annotated[float, Unit("1")] | None = Field(
+        default=None,
+        description="Torque shown per tilting moment; sensitivity times moment is to be subtracted",
     )
 
     @model_validator(mode="after")
