@@ -201,6 +201,7 @@ def test_the_header_is_the_sheets(tmp_path: Path, call: Call) -> None:
         (("--rated-torque", 0), "rated_torque_Nm = 0 Nm: expected 1e-06 to 1e+07 Nm"),
         (("--rated-torque", "nan"), "rated_torque_Nm = nan: expected a number"),
         (("--harmonics", 0), "harmonics = 0: expected a whole number"),
+        (("--harmonics", 2.5), "--harmonics 2.5: expected a whole number"),
         (("--positions", 4), "positions = 4: expected at least 5"),
         (("--experiments", 4), "experiments = 4: expected at least 5, one for each position"),
         (("--experiments", 99999), "expected at most 100000"),

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import cyclopts
 
+from strainwave.cli.whole import Whole
+
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
@@ -16,13 +18,13 @@ if TYPE_CHECKING:
 def calibrate_plan(
     *,
     rated_torque: float,
-    harmonics: int,
+    harmonics: Whole,
     out: Path,
-    positions: int | None = None,
-    experiments: int | None = None,
+    positions: Whole | None = None,
+    experiments: Whole | None = None,
     temperatures: Annotated[str | None, cyclopts.Parameter(show_default=False)] = None,
-    steps: int = 5,
-    preloads: int = 3,
+    steps: Whole = 5,
+    preloads: Whole = 3,
     dwell: float = 30.0,
     one_direction: bool = False,
     printable: Path | None = None,

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 import cyclopts
 
+from strainwave.cli.whole import Whole
+
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
@@ -24,7 +26,7 @@ def calibrate_torque_command(
     rated_torque: float | None = None,
     ratio: float | None = None,
     configuration: Literal["flexspline-fixed", "circular-spline-fixed"] | None = None,
-    harmonics: int = 2,
+    harmonics: Whole = 2,
     load_uncertainty: float | None = None,
     resolution: float | None = None,
     through_origin: bool = False,

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
@@ -17,6 +16,7 @@ from strainwave.commissioning.torque_warnings import warnings_of
 from strainwave.configuration import converter_of
 from strainwave.errors import InputError
 from strainwave.joint import Provenance, build_section, new_joint, read_joint, write_joint
+from strainwave.records.joint_output import check_joint_output
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -109,7 +109,7 @@ def calibrate_torque(
         If something that was given cannot be used; nothing is written then.
     """
     path, out = Path(path), Path(out)
-    _check_out(out, joint_path)
+    check_joint_output(out, path, joint_path)
     _check(options)
     joint_file = new_joint(path.stem or "joint") if joint_path is None else read_joint(joint_path)
     joint = joint_file.joint
@@ -134,20 +134,6 @@ def calibrate_torque(
     sections = _fill(joint_file, fit, options, provenance, makes_gear=makes_gear)
     write_joint(joint_file, out)
     return TorqueCalibrated(path, out, fit, sections, warnings_of(table, fit, fit_options))
-
-
-def _check_out(out: Path, joint_path: Path | None) -> None:
-    if out.suffix.lower() != ".toml":
-        raise InputError(
-            f"--out {out}: the name ends in {out.suffix!r}; expected a joint file, so choose a name "
-            "that ends in .toml"
-        )
-    same = joint_path is not None and os.path.realpath(out) == os.path.realpath(joint_path)
-    if out.exists() and not same:
-        raise InputError(
-            f"--out {out}: there is a file already; expected a new name, or the file of --joint, so "
-            "choose another name or start from that file with --joint"
-        )
 
 
 def _check(options: TorqueOptions) -> None:

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import os
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from strainwave.errors import InputError
 from strainwave.identify.judgement import judge_ripple
 from strainwave.identify.recording import identify_ripple
 from strainwave.identify.torque_or_artefact import UNDECIDABLE
@@ -21,6 +19,7 @@ from strainwave.records.findings import warnings_of
 from strainwave.records.gearing import gearing_of_both, gearing_of_motor, gearing_of_output
 from strainwave.records.identified_joint import columns_of, fill_joint
 from strainwave.records.identified_log import Gearing, IdentifiedLog
+from strainwave.records.joint_output import check_joint_output
 from strainwave.records.layout import build_layout
 from strainwave.records.method_setting import MOST_ROWS, read_excerpt
 from strainwave.records.opening import open_recording
@@ -86,7 +85,7 @@ def identify_log(
         If something that was given cannot be used; nothing is written then.
     """
     path, out, options = Path(path), Path(out), options or Options()
-    _check_out(out, path, joint_path)
+    check_joint_output(out, path, joint_path)
     joint_file = new_joint(path.stem or "joint") if joint_path is None else read_joint(joint_path)
     joint = None if joint_path is None else joint_file.joint
     recording = open_recording(path)
@@ -213,24 +212,3 @@ def _kept_as_before(joint: Joint, ripple: Ripple, judged: TorqueOrArtefact) -> t
     if not kept:
         return ()
     return (f"order {', '.join(kept)} stays kept, as the joint file has it",)
-
-
-def _check_out(out: Path, path: Path, joint_path: Path | None) -> None:
-    if out.suffix.lower() != ".toml":
-        raise InputError(
-            f"--out {out}: the name ends in {out.suffix!r}; expected a joint file, so choose a name "
-            "that ends in .toml"
-        )
-    if out.is_dir() or not out.resolve().parent.is_dir():
-        raise InputError(
-            f"--out {out}: there is no such folder, or it is one itself; expected a file in an "
-            "existing folder, so choose another place"
-        )
-    if not path.exists():
-        return
-    same = joint_path is not None and os.path.realpath(out) == os.path.realpath(joint_path)
-    if out.exists() and not same:
-        raise InputError(
-            f"--out {out}: there is a file already; expected a new name, or the file of --joint, so "
-            "choose another name or start from that file with --joint"
-        )
