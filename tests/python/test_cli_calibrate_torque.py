@@ -316,6 +316,25 @@ def test_two_readings_have_a_gain_and_no_uncertainty(tmp_path: Path, call: Call)
     assert "uncertainty_Nm_per_V" not in out.read_text(encoding="utf-8")
 
 
+def test_a_large_zero_is_no_reason_to_refuse(tmp_path: Path, call: Call) -> None:
+    # The line through the origin beside ours has no gain, or one of the other sign.
+    for name, zero_V in (("a", 40.0 / GAIN), ("b", 30.0 / GAIN)):
+        base = experiments(Truth(zero_V=zero_V), 3, loads=[0.0, -40.0, 0.0])
+        found = _run(call, table(tmp_path / f"{name}.csv", base), "--json").result
+        assert found["gain_Nm_per_V"] == pytest.approx(GAIN, rel=1e-9)
+        assert found["zero_V"] == pytest.approx(zero_V, rel=1e-9)
+        assert any("only one direction" in warning for warning in found["warnings"])
+
+
+def test_one_load_has_a_line_through_the_origin(tmp_path: Path, call: Call) -> None:
+    loads = table(tmp_path / "loads.csv", experiments(Truth(zero_V=0.0), 3, loads=[40.0, 40.0]))
+    found = _run(call, loads, "--through-origin", "--json").result
+    assert found["gain_Nm_per_V"] == pytest.approx(GAIN, rel=1e-9)
+    written = read_joint(tmp_path / "loads.toml").joint.torque_calibration
+    assert written is not None
+    assert (written.lowest_torque_Nm, written.highest_torque_Nm) == (0.0, 40.0)
+
+
 def test_outliers_are_named_by_row_and_experiment(tmp_path: Path, call: Call) -> None:
     base = experiments(Truth(gain_scatter=0.001, noise_V=0.002), 8, 1)
     read = base.voltage_V.copy()

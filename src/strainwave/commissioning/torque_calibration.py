@@ -237,9 +237,10 @@ def _values(fit: TorqueFit) -> dict[str, Any]:
         "zero_V": fit.zero_V,
         "linearisation": [float(value) for value in fit.coefficients],
         "experiment_count": len(fit.lines),
-        "lowest_torque_Nm": float(fit.loadings.load_Nm.min()),
-        "highest_torque_Nm": float(fit.loadings.load_Nm.max()),
     }
+    # The origin is a point of a line that is made to pass it.
+    loads = np.append(fit.loadings.load_Nm, [0.0] if fit.through_origin else [])
+    values["lowest_torque_Nm"], values["highest_torque_Nm"] = float(loads.min()), float(loads.max())
     if fit.gain_budget.components:
         values["gain_standard_uncertainty_Nm_per_V"] = fit.gain_budget.combined
     if fit.scatter is not None:

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from strainwave.calibrate.loadings import Loadings
-    from strainwave.calibrate.torque import SensorGain
+    from strainwave.calibrate.torque import Consistency, SensorGain
     from strainwave.calibrate.variance_components import VarianceComponents
 
 
@@ -86,7 +86,7 @@ def fit_torque(loadings: Loadings, options: FitOptions) -> TorqueFit:
         loadings = without_crosstalk(loadings, side).only(has_torque(loadings))
     require_loads(loadings, intercept=not options.through_origin)
     lines = _lines(loadings, intercept=not options.through_origin)
-    origin_lines = lines if options.through_origin else _lines(loadings, intercept=False)
+    origin_lines = lines if options.through_origin else _origin_lines(loadings)
     full_scale_Nm = options.rated_torque_Nm or loadings.largest_load_Nm
     linearisation = linearise(loadings, lines, full_scale_Nm)
     curve = linearisation.curve
@@ -96,7 +96,6 @@ def fit_torque(loadings: Loadings, options: FitOptions) -> TorqueFit:
     if is_curved:
         gains, zeros = curve.gains_Nm_per_V, curve.zeros_V
     scatter = consistency(gains) if len(gains) > 1 else None
-    origin_gains = [line.gain_Nm_per_V for line in origin_lines]
     coefficients = curve.coefficients if is_curved else ()
     gain, zero_V = float(np.mean(gains)), float(np.mean(zeros))
     distances = loadings.load_Nm - calibrated_torque_Nm(
@@ -113,7 +112,7 @@ def fit_torque(loadings: Loadings, options: FitOptions) -> TorqueFit:
         lines=lines,
         zeros_V=zeros,
         full_scale_Nm=full_scale_Nm,
-        curve_Nm=_curve_error_Nm(loadings, linearisation, is_curved=is_curved),
+        curve_Nm=_curve_error_Nm(loadings, lines, linearisation, is_curved=is_curved),
         errors=errors,
         load_uncertainty=options.load_uncertainty,
         resolution_V=options.resolution_V,
@@ -132,7 +131,7 @@ def fit_torque(loadings: Loadings, options: FitOptions) -> TorqueFit:
         gain_Nm_per_V=gain,
         zero_V=zero_V,
         scatter=scatter,
-        origin_scatter=consistency(origin_gains) if len(gains) > 1 else None,
+        origin_scatter=_origin_scatter(origin_lines),
         errors=errors,
         interpolation_error_Nm=interpolation_Nm,
         total_error_Nm=float(np.max(np.abs(distances))),
@@ -197,16 +196,36 @@ def _lines(loadings: Loadings, *, intercept: bool) -> tuple[SensorGain, ...]:
     return tuple(lines)
 
 
-def _curve_error_Nm(loadings: Loadings, linearisation: Linearisation, *, is_curved: bool) -> float:
+def _origin_lines(loadings: Loadings) -> tuple[SensorGain, ...]:
+    """Lines beside those in use; none where a large zero leaves one without a gain."""
+    try:
+        return _lines(loadings, intercept=False)
+    except InputError:
+        return ()
+
+
+def _origin_scatter(lines: tuple[SensorGain, ...]) -> Consistency | None:
+    gains = np.array([line.gain_Nm_per_V for line in lines])
+    of_one_sign = len(gains) > 1 and (np.all(gains > 0) or np.all(gains < 0))
+    return consistency(gains) if of_one_sign else None
+
+
+def _curve_error_Nm(
+    loadings: Loadings,
+    lines: tuple[SensorGain, ...],
+    linearisation: Linearisation,
+    *,
+    is_curved: bool,
+) -> float:
     """Largest mean residual at a load, over the experiments, of curve or lines in use."""
     levels = loadings.levels()
     if is_curved:
         residuals = linearisation.curve.residuals_Nm
     else:
         residuals = np.empty(len(loadings))
-        for rows in loadings.rows():
-            volts, load = loadings.voltage_V[rows], loadings.load_Nm[rows]
-            residuals[rows] = load - np.polyval(np.polyfit(volts, load, 1), volts)
+        for rows, line in zip(loadings.rows(), lines, strict=True):
+            read_Nm = line.gain_Nm_per_V * (loadings.voltage_V[rows] - line.zero_V)
+            residuals[rows] = loadings.load_Nm[rows] - read_Nm
     means = np.bincount(levels, residuals) / np.bincount(levels)
     return float(np.max(np.abs(means)))
 

@@ -39,7 +39,8 @@ class TorqueFit:
     through_origin : bool
         Whether lines were made to pass the origin.
     lines, origin_lines : tuple of SensorGain
-        Line of each experiment, and the one through the origin.
+        Line of each experiment, and the one through the origin; of these none where a large zero
+        leaves one without a gain.
     linearisation : Linearisation
         Polynomial of the order the data support.
     coefficients : tuple of float
@@ -199,7 +200,7 @@ class TorqueCalibrated:
                 ],
             },
             "through_origin": {
-                "gain_Nm_per_V": float(np.mean(origin_gains)),
+                "gain_Nm_per_V": float(np.mean(origin_gains)) if origin_gains else None,
                 "consistency": None if origin is None else origin.consistency,
             },
             "gain_uncertainty": _budget(fit.gain_budget),
@@ -229,7 +230,9 @@ class TorqueCalibrated:
             "gain_Nm_per_V": fit.gains_Nm_per_V[index],
             "zero_V": fit.zeros_V[index],
             "gain_standard_error_Nm_per_V": line.gain_standard_error_Nm_per_V,
-            "gain_through_origin_Nm_per_V": fit.origin_lines[index].gain_Nm_per_V,
+            "gain_through_origin_Nm_per_V": fit.origin_lines[index].gain_Nm_per_V
+            if fit.origin_lines
+            else None,
             "residual_rms_FS": fit.percent(line.residual_rms_Nm),
             "linearity_error_FS": fit.percent(fit.errors.linearity_Nm[index]),
             "hysteresis_FS": fit.percent(fit.errors.hysteresis_Nm[index]),

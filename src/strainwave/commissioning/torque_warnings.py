@@ -98,6 +98,8 @@ def _loads(fit: TorqueFit) -> Iterator[str]:
         origin = [line.gain_Nm_per_V for line in fit.origin_lines]
         if fit.through_origin:
             says = "and lines through the origin turn any zero error into a gain error"
+        elif not origin:
+            says = "where a line through the origin would give no gain at all"
         else:
             off = 100.0 * (float(np.mean(origin)) / float(np.mean(with_zero)) - 1.0)
             says = (
