@@ -165,6 +165,89 @@ def compensation_conditions(
     return matrix
 
 
+def checked_wave_factor(wave_factor: float) -> float:
+    """Take a factor m, or say what was given instead.
+
+    Parameters
+    ----------
+    wave_factor : float
+        Wave turns per motor turn.
+
+    Returns
+    -------
+    float
+        The factor.
+
+    Raises
+    ------
+    InputError
+        If it is no number above 0 and below 2^31.
+    """
+    factor = real_number("wave_factor", wave_factor)
+    if not 0 < factor < 2**31:
+        raise InputError(
+            f"wave_factor = {factor:g}: expected a number above 0 and below 2^31, wave turns per "
+            "motor turn; take it from the gear"
+        )
+    return factor
+
+
+def checked_run(
+    signals: ArrayLike, motor_angle_rad: ArrayLike, positions_rad: ArrayLike, harmonics: int
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+    """Take one run of all gauges, or say why harmonics cannot be fitted to it.
+
+    Parameters
+    ----------
+    signals : array_like
+        Gauge signals in any unit, shape (samples, gauges).
+    motor_angle_rad : array_like
+        Wave-generator angle, shape (samples,), rad.
+    positions_rad : array_like
+        Positions of the gauges, shape (gauges,), rad.
+    harmonics : int
+        Number of harmonics to be fitted.
+
+    Returns
+    -------
+    tuple of numpy.ndarray
+        Signals, angle, positions.
+
+    Raises
+    ------
+    InputError
+        If the shapes do not fit, values are not finite or the angle covers less than half a turn.
+    """
+    signal = contiguous("signals", signals, np.float64, dimensions=2)
+    angle = contiguous("motor_angle_rad", motor_angle_rad, np.float64)
+    position = contiguous("positions_rad", positions_rad, np.float64)
+    if signal.shape != (len(angle), len(position)):
+        raise InputError(
+            f"signals has the shape {signal.shape}: expected ({len(angle)}, {len(position)}), a "
+            "row a sample of motor_angle_rad and a column a gauge of positions_rad; check both"
+        )
+    require_finite("signals", signal, "row", "column")
+    require_finite("motor_angle_rad", angle, "row")
+    require_finite("positions_rad", position, "gauge")
+    for name, values in (("motor_angle_rad", angle), ("positions_rad", position)):
+        if np.any(np.abs(values) > LARGEST_ANGLE_RAD):
+            raise InputError(
+                f"{name} reaches {np.abs(values).max():g} rad: expected angles within 2^40 turns; "
+                "check their unit"
+            )
+    if len(angle) == 0 or np.ptp(angle) < np.pi:
+        raise InputError(
+            "motor_angle_rad covers less than half a turn: expected at least pi rad; turn the "
+            "wave generator further"
+        )
+    if len(angle) < 2 + 2 * harmonics:
+        raise InputError(
+            f"motor_angle_rad has {len(angle)} elements: expected at least {2 + 2 * harmonics} for "
+            f"{harmonics} harmonic(s), an offset and a drift; record more samples"
+        )
+    return signal, angle, position
+
+
 def fit_fluctuation(
     signals: ArrayLike,
     motor_angle_rad: ArrayLike,
@@ -200,39 +283,8 @@ def fit_fluctuation(
         does not tell the harmonics apart.
     """
     harmonics = whole_number("harmonics", harmonics)
-    factor = real_number("wave_factor", wave_factor)
-    if not 0 < factor < 2**31:
-        raise InputError(
-            f"wave_factor = {factor:g}: expected a number above 0 and below 2^31, wave turns per "
-            "motor turn; take it from the gear"
-        )
-    signal = contiguous("signals", signals, np.float64, dimensions=2)
-    angle = contiguous("motor_angle_rad", motor_angle_rad, np.float64)
-    position = contiguous("positions_rad", positions_rad, np.float64)
-    if signal.shape != (len(angle), len(position)):
-        raise InputError(
-            f"signals has the shape {signal.shape}: expected ({len(angle)}, {len(position)}), a "
-            "row a sample of motor_angle_rad and a column a gauge of positions_rad; check both"
-        )
-    require_finite("signals", signal, "row", "column")
-    require_finite("motor_angle_rad", angle, "row")
-    require_finite("positions_rad", position, "gauge")
-    for name, values in (("motor_angle_rad", angle), ("positions_rad", position)):
-        if np.any(np.abs(values) > LARGEST_ANGLE_RAD):
-            raise InputError(
-                f"{name} reaches {np.abs(values).max():g} rad: expected angles within 2^40 turns; "
-                "check their unit"
-            )
-    if len(angle) == 0 or np.ptp(angle) < np.pi:
-        raise InputError(
-            "motor_angle_rad covers less than half a turn: expected at least pi rad; turn the "
-            "wave generator further"
-        )
-    if len(angle) < 2 + 2 * harmonics:
-        raise InputError(
-            f"motor_angle_rad has {len(angle)} elements: expected at least {2 + 2 * harmonics} for "
-            f"{harmonics} harmonic(s), an offset and a drift; record more samples"
-        )
+    factor = checked_wave_factor(wave_factor)
+    signal, angle, position = checked_run(signals, motor_angle_rad, positions_rad, harmonics)
     orders = 2 * factor * np.arange(1, harmonics + 1)
     columns = [np.ones_like(angle), (angle - angle.mean()) / np.ptp(angle)]
     for order in orders:

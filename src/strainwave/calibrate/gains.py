@@ -151,7 +151,8 @@ def compensating_gains(
         noise_factor=_core.Gains(gains.tolist()).noise_factor,
         condition=float(singular[0] / singular[rank - 1]) if rank else 1.0,
         negative=negative,
-        warnings=_warnings(gauges, negative, noise_power, None if exact else residuals),
+        warnings=warnings_of(gains, noise_power)
+        + (() if exact else (_least_residual_warning(gauges, residuals),)),
     )
 
 
@@ -185,17 +186,27 @@ def _checked_sensitivities(values: ArrayLike | None, gauges: int) -> NDArray[np.
     return torque
 
 
-def _warnings(
-    gauges: int,
-    negative: tuple[int, ...],
-    noise_power: float,
-    residuals: NDArray[np.float64] | None,
-) -> tuple[str, ...]:
+def warnings_of(gains: NDArray[np.float64], noise_power: float) -> tuple[str, ...]:
+    """Say what is unusual about gains, whatever they were solved from.
+
+    Parameters
+    ----------
+    gains : numpy.ndarray
+        g_j, shape (gauges,).
+    noise_power : float
+        Noise power over that of equal gains at the same torque signal.
+
+    Returns
+    -------
+    tuple of str
+        A sentence each; empty where nothing is.
+    """
     found = []
-    if negative:
+    negative = np.flatnonzero(gains < 0) + 1
+    if len(negative):
         which = ", ".join(map(str, negative))
         found.append(
-            f"Gauges with a negative gain, {which} of {gauges}, take torque away from the sum: "
+            f"Gauges with a negative gain, {which} of {len(gains)}, take torque away from the sum: "
             "check their sign and position, or move them away from the others."
         )
     if noise_power > NOTEWORTHY_NOISE:
@@ -203,14 +214,16 @@ def _warnings(
             f"The noise power is {noise_power:.3g} times that of equal gains: the gauges see "
             "waves that are alike; move them apart or add one."
         )
-    if residuals is not None:
-        left = ", ".join(f"{residual:.3g}" for residual in residuals)
-        needed = minimum_gauges(len(residuals))
-        found.append(
-            f"The fluctuation does not vanish, amplitudes of {left} are left: {gauges} gauges are "
-            f"fewer than the {needed} that cancel every wave of {len(residuals)} harmonic(s)."
-        )
     return tuple(found)
+
+
+def _least_residual_warning(gauges: int, residuals: NDArray[np.float64]) -> str:
+    left = ", ".join(f"{residual:.3g}" for residual in residuals)
+    needed = minimum_gauges(len(residuals))
+    return (
+        f"The fluctuation does not vanish, amplitudes of {left} are left: {gauges} gauges are "
+        f"fewer than the {needed} that cancel every wave of {len(residuals)} harmonic(s)."
+    )
 
 
 def _amplitudes(components: NDArray[np.float64]) -> NDArray[np.float64]:
