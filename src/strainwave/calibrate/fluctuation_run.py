@@ -74,7 +74,7 @@ class FluctuationRun:
     @property
     def phase_errors_rad(self) -> NDArray[np.float64]:
         """psi_ij of eq. (6), shape (harmonics, gauges), rad, within +-pi."""
-        return np.angle(self.phasors * np.exp(-1j * self._leads_rad))
+        return np.asarray(np.angle(self.phasors * np.exp(-1j * self._leads_rad)))
 
     @property
     def amplitude_standard_errors(self) -> NDArray[np.float64]:
@@ -95,7 +95,8 @@ class FluctuationRun:
         rounding = 1e-12 * float(np.max(np.abs(self.phasors), initial=0.0))
         parts = np.einsum("ipjipj->ipj", self.covariance)
         errors = np.sqrt(parts.max(axis=1))
-        return np.any(self.amplitudes > np.maximum(LEAST_EVIDENCE * errors, rounding), axis=1)
+        shown = self.amplitudes > np.maximum(LEAST_EVIDENCE * errors, rounding)
+        return np.asarray(shown.any(axis=1))
 
     @property
     def _leads_rad(self) -> NDArray[np.float64]:
@@ -110,7 +111,7 @@ class FluctuationRun:
         variance = (
             along**2 * sine_sine + 2 * along * beside * sine_cosine + beside**2 * cosine_cosine
         )
-        return np.sqrt(np.maximum(variance, 0.0))
+        return np.asarray(np.sqrt(np.maximum(variance, 0.0)))
 
     def conditions(self, harmonics: ArrayLike) -> NDArray[np.float64]:
         """Matrix of A g = 0 for some of the harmonics. Godler 2000, eq. (9).
@@ -159,7 +160,7 @@ class FluctuationRun:
         """
         weight = np.asarray(gains, dtype=np.float64)
         variance = np.einsum("ipjipk,j,k->ip", self.covariance, weight, weight)
-        return np.sqrt(np.maximum(variance.mean(axis=1), 0.0))
+        return np.asarray(np.sqrt(np.maximum(variance.mean(axis=1), 0.0)))
 
 
 def fit_run(

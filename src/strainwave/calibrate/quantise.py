@@ -7,6 +7,7 @@ values, and common factors, are tried together.
 
 from __future__ import annotations
 
+import contextlib
 import itertools
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final, Literal
@@ -114,18 +115,16 @@ def parse_circuit(text: str, option: str = "--quantise") -> Circuit:
             resistors = np.concatenate([np.array(series) * 10.0**decade for decade in range(-1, 4)])
             return Circuit(kind, np.sort(FEEDBACK_KILOHM / resistors))  # type: ignore[arg-type]
     words = text.split(":")
-    try:
-        if words[0] != "potentiometer" or len(words) not in {2, 4}:
-            raise ValueError
-        steps = int(words[1])
-        low, high = (float(words[2]), float(words[3])) if len(words) == 4 else (0.0, 2.0)
-        if not (2 <= steps <= 1_000_000 and -100 <= low < high <= 100):
-            raise ValueError
-    except ValueError:
+    steps, low, high = 0, 0.0, 2.0
+    with contextlib.suppress(ValueError):
+        if words[0] == "potentiometer" and len(words) in {2, 4}:
+            steps = int(words[1])
+            low, high = map(float, words[2:]) if len(words) == 4 else (low, high)
+    if not (2 <= steps <= 1_000_000 and -100 <= low < high <= 100):
         raise InputError(
             f"{option} {text}: expected {EXAMPLE}, with 2 to 1000000 steps and gains within "
             "+-100, the lower first; correct this value"
-        ) from None
+        )
     return Circuit("potentiometer", np.linspace(low, high, steps))
 
 
@@ -134,6 +133,8 @@ def quantise_gains(
     gains: NDArray[np.float64],
     conditions: NDArray[np.float64],
     torque_sensitivities: NDArray[np.float64],
+    *,
+    common_scales: NDArray[np.float64] = COMMON_SCALES,
 ) -> QuantisedGains:
     """Choose gains of a circuit that leave the least fluctuation for the torque they pass.
 
@@ -147,6 +148,8 @@ def quantise_gains(
         Conditions of the harmonics to cancel, of all runs, shape (rows, gauges).
     torque_sensitivities : numpy.ndarray
         t_j, shape (gauges,).
+    common_scales : numpy.ndarray
+        Factors that all gains together may be scaled by.
 
     Returns
     -------
@@ -160,9 +163,9 @@ def quantise_gains(
     """
     _require_range(circuit, gains)
     rounded = _neighbours(circuit, gains, 1)[:, 0]
-    best, least = rounded, _left(rounded, conditions, torque_sensitivities)
+    best, least = rounded, float(_left(rounded, conditions, torque_sensitivities))
     width = next(k for k in (5, 3, 2, 1) if k ** len(gains) <= MOST_COMBINATIONS or k == 1)
-    for scale in COMMON_SCALES:
+    for scale in common_scales:
         if width > 1:
             choices = _neighbours(circuit, scale * gains, width)
             tried = np.array(list(itertools.product(*choices)))

@@ -92,8 +92,8 @@ def gauge_phasors(
         settings.T
     ):
         return None
-    solved: NDArray[np.complex128] = np.linalg.lstsq(settings.astype(complex), sums, rcond=None)[0]
-    return solved.T
+    solved = np.linalg.lstsq(settings.astype(complex), sums, rcond=None)[0]
+    return np.asarray(solved.T, dtype=np.complex128)
 
 
 def trial_turn(settings: NDArray[np.float64]) -> Turn:
@@ -127,7 +127,7 @@ def advise(
     *,
     most_noise: float = MOST_NOISE,
 ) -> Advice:
-    """Turns that cancel what the last run left, at the torque signal as it is.
+    """Find turns that cancel what the last run left, at the torque signal as it is.
 
     Parameters
     ----------

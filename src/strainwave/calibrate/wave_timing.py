@@ -153,9 +153,7 @@ def _require_changing_speed(speed: NDArray[np.float64] | None) -> None:
         )
 
 
-def _searched(
-    signals: NDArray[np.float64], angle_rad: NDArray[np.float64], told: float
-) -> float:
+def _searched(signals: NDArray[np.float64], angle_rad: NDArray[np.float64], told: float) -> float:
     """Factor with the strongest first harmonic: blocks are turned against each other."""
     rows = len(angle_rad)
     turns = np.ptp(angle_rad) / (2 * np.pi)
@@ -175,7 +173,10 @@ def _searched(
     # Ties, as in a run too short to tell, go to the told factor.
     shifts = shifts[np.argsort(np.abs(shifts), kind="stable")]
     powers = np.array(
-        [np.sum(np.abs(np.sum(sums * np.exp(-2j * shift * middles), axis=0)) ** 2) for shift in shifts]
+        [
+            np.sum(np.abs(np.sum(sums * np.exp(-2j * shift * middles), axis=0)) ** 2)
+            for shift in shifts
+        ]
     )
     return told + float(shifts[np.argmax(powers)])
 

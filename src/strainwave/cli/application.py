@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Final
 import cyclopts
 
 from strainwave.cli.calibrate import calibrate_app
+from strainwave.cli.calibrate_fluctuation import fluctuation
+from strainwave.cli.calibrate_tune import tune
 from strainwave.cli.calibrate_plan import calibrate_plan
 from strainwave.cli.calibrate_torque import calibrate_torque_command
 from strainwave.cli.demo import demo
@@ -39,6 +41,8 @@ app.command(identify_command, name="identify")
 calibrate_app.command(calibrate_torque_command, name="torque")
 calibrate_app.command(calibrate_plan, name="plan")
 app.command(calibrate_app)
+calibrate_app.command(fluctuation)
+calibrate_app.command(tune)
 app.command(design_app)
 app.command(joint_app)
 
