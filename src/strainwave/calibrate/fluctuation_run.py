@@ -8,6 +8,7 @@ section III, eq. (6)-(8).
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Final
@@ -317,7 +318,7 @@ def _covariance(
     sums = np.array(
         [
             (influence[:, start:end] @ residuals[start:end]).ravel()
-            for start, end in zip(edges[:-1], edges[1:], strict=True)
+            for start, end in itertools.pairwise(edges)
         ]
     )
     # The sums over all blocks are 0, which takes one of them away; fitted parameters take more.

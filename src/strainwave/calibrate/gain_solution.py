@@ -191,7 +191,7 @@ def _uncertainties(
     weights: NDArray[np.float64],
     torque: NDArray[np.float64],
 ) -> NDArray[np.float64]:
-    """Standard uncertainties of gains, by their derivatives with respect to every phasor."""
+    """Find standard uncertainties of gains by their derivatives with respect to every phasor."""
     chosen = np.asarray(harmonics, dtype=int) - 1
     parts = [run.conditions(harmonics) for run in runs]
     step = DERIVATIVE_STEP * max(float(np.abs(part).max()) for part in parts)

@@ -118,8 +118,8 @@ def parse_circuit(text: str, option: str = "--quantise") -> Circuit:
     steps, low, high = 0, 0.0, 2.0
     with contextlib.suppress(ValueError):
         if words[0] == "potentiometer" and len(words) in {2, 4}:
-            steps = int(words[1])
             low, high = map(float, words[2:]) if len(words) == 4 else (low, high)
+            steps = int(words[1])
     if not (2 <= steps <= 1_000_000 and -100 <= low < high <= 100):
         raise InputError(
             f"{option} {text}: expected {EXAMPLE}, with 2 to 1000000 steps and gains within "
