@@ -169,7 +169,7 @@ def advise(
             f"{'; here ' if found else ''}{'; '.join(found)}"
         )
     turns = [
-        Turn(j + 1, float(now[j]), float(then[j]))
+        Turn(int(j) + 1, float(now[j]), float(then[j]))
         for j in np.argsort(-np.abs(then - now), kind="stable")
         if abs(then[j] - now[j]) > 1e-9 * float(np.abs(now).max())
     ]

@@ -334,7 +334,7 @@ def _on_steps(
     )
     half = float(circuit.values[1] - circuit.values[0]) / 2
     turns = tuple(
-        Turn(j + 1, float(now[j]), float(found.gains[j]))
+        Turn(int(j) + 1, float(now[j]), float(found.gains[j]))
         for j in np.argsort(-np.abs(found.gains - now), kind="stable")
         if abs(found.gains[j] - now[j]) > half
     )
@@ -353,8 +353,8 @@ def _disagreement(
     away = np.abs(sums - settings @ phasors.T)
     if not np.any(away > MOST_DISAGREEMENT * errors):
         return ()
-    worst = int(np.argmax(np.max(away / errors, axis=1))) + 1
     return (
-        f"run {worst} does not fit the others by {away[worst - 1].max():.2g} V: a setting may be "
-        "read off badly, the angle may count from another zero, or the torque was another one",
+        f"the runs and their settings contradict each other by {away.max():.2g} V: a setting may be "
+        "read off badly, the angle of a run may count from another zero, or its torque was "
+        "another one",
     )
