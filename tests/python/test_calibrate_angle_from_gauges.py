@@ -45,8 +45,9 @@ def test_at_rest_and_in_motion_with_known_gauges(gauges: int) -> None:
     at_rest = np.concatenate(
         [
             error_deg(
-                resolver.angle(station.hold(nothing, 0.05, k, position_rad=place).volts)
-                .wave_angle_rad,
+                resolver.angle(
+                    station.hold(nothing, 0.05, k, position_rad=place).volts
+                ).wave_angle_rad,
                 station.wave_factor * place,
             )
             for k, place in enumerate(places)

@@ -46,14 +46,13 @@ def calibrate(call: Call, log: Path, gauges: int, harmonics: int, out: Path, *mo
 
 def other_run(station, seed: int):
     run = turns_of(station, 2.0, seed)
-    fit = fit_run(
+    return fit_run(
         run.volts,
         run.motor_angle_rad,
         positions_rad=[each.position_rad for each in station.gauges],
         harmonics=4,
         wave_factor=station.wave_factor,
     )
-    return fit
 
 
 @pytest.mark.parametrize("seed", range(5))
@@ -403,7 +402,9 @@ def test_options_that_belong_together(tmp_path: Path, call: Call) -> None:
 
 
 def test_bad_recordings(tmp_path: Path, call: Call) -> None:
-    columns = {name: values.copy() for name, values in columns_of(turns_of(station_of(3), 1.0, 3)).items()}
+    columns = {
+        name: values.copy() for name, values in columns_of(turns_of(station_of(3), 1.0, 3)).items()
+    }
 
     def ended_with(name: str, values: Any) -> Any:
         changed: dict[str, Any] = dict(columns)
