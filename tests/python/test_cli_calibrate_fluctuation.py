@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import math
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -23,7 +24,7 @@ from strainwave.calibrate.fluctuation import equally_spaced_positions_rad
 from strainwave.calibrate.fluctuation_run import fit_run
 from strainwave.joint import build_section, new_joint, read_joint, write_joint
 from strainwave.joint.provenance import Provenance
-from strainwave.simulate.trajectories import PiecewiseLinear
+from strainwave.simulate.trajectories import PiecewiseLinear, Sine
 
 Call = Any
 GEAR = ("--ratio", 51, "--configuration", "flexspline-fixed")
@@ -304,6 +305,81 @@ def test_gains_for_a_lost_gauge_are_stored(tmp_path: Path, call: Call) -> None:
     for each in section.without_gauge:
         assert each.gains[each.gauge - 1] == 0
         assert sum(each.gains) == pytest.approx(4)
+
+
+def test_a_delay_is_found_or_taken_from_the_joint_file(tmp_path: Path, call: Call) -> None:
+    base = station_of(3)
+    late = replace(base.acquisition, angle_to_torque_delay_s=0.003)
+    station = replace(base, acquisition=late)
+    run = station.rotate(Sine(3 * math.pi, 0.4, 0.0, 4 * math.pi), 5.0, 1)
+    log = write_run(tmp_path / "run.parquet", run)
+    plain = calibrate(call, log, 3, 1, tmp_path / "a.toml", *GEAR).result
+    found = calibrate(call, log, 3, 1, tmp_path / "b.toml", *GEAR, "--fit-delay").result
+    assert found["delay_s"] == pytest.approx(0.003, abs=5e-5)
+    assert plain["delay_s"] == 0
+    errors = [np.max(each["amplitudes_standard_error"]) for each in (plain, found)]
+    assert errors[0] > 10 * errors[1]
+    assert found["phases_rad"][0] == pytest.approx([0.0, -0.026, -0.007], abs=0.004)
+    file = gauges_joint(tmp_path, 3)
+    joint = read_joint(file)
+    values = {"angle_to_torque_delay_s": 0.003}
+    joint.set_section("signals", build_section("signals", values, "test"), Provenance.by_hand())
+    write_joint(joint, file)
+    told = calibrate(call, log, 3, 1, file, "--joint", file)
+    assert told.result["amplitudes"][0] == pytest.approx(found["amplitudes"][0], rel=1e-4)
+    ended = call(
+        *("calibrate", "fluctuation", log, "--map", "angle=beta_rad,gauges=g1_V+g2_V+g3_V"),
+        *("--harmonics", 1, "--joint", file, "--out", file),
+    )
+    assert ended.code == 0
+    assert "not taken out without a column of time" in ended.err
+
+
+def test_time_that_falls_is_refused_where_it_matters(tmp_path: Path, call: Call) -> None:
+    columns = columns_of(turns_of(station_of(3), 2.0, 3))
+    columns["t_s"][700] = 0.1
+    log = write_parquet(tmp_path / "run.parquet", columns)
+    words = ("calibrate", "fluctuation", log, "--map", mapping_of(3), "--harmonics", 1, *GEAR)
+    assert call(*words, "--out", tmp_path / "a.toml").code == 0
+    ended = call(*words, "--fit-delay", "--out", tmp_path / "b.toml")
+    assert ended.code == 2
+    assert "row 701" in ended.err
+
+
+def test_torque_sensitivities_are_kept_and_stored(tmp_path: Path, call: Call) -> None:
+    log = write_run(tmp_path / "run.parquet", turns_of(station_of(5), 1.0, 3))
+    out = tmp_path / "j.toml"
+    torque = [1.0, 1.05, 0.95, 1.1, 0.9]
+    text = ",".join(map(str, torque))
+    result = calibrate(call, log, 5, 1, out, *GEAR, "--torque-sensitivity", text).result
+    assert np.dot(result["gains"], torque) == pytest.approx(sum(torque))
+    section = read_joint(out).joint.gains
+    assert section is not None
+    assert section.torque_sensitivities == tuple(torque)
+    # Next time they are known.
+    again = calibrate(call, log, 5, 1, out, *GEAR, "--joint", out).result
+    assert again["gains"] == pytest.approx(result["gains"], rel=1e-12)
+
+
+def test_gauges_at_the_end_of_the_range_are_said(tmp_path: Path, call: Call) -> None:
+    run = turns_of(station_of(3), 1.0, 3)
+    columns = {"beta_rad": run.motor_angle_rad}
+    columns |= {f"g{j + 1}": np.ascontiguousarray(run.codes[:, j]) for j in range(3)}
+    log = write_parquet(tmp_path / "codes.parquet", columns)
+    half = {"converter_minimum_V": -1.75, "converter_maximum_V": 1.75}
+    file = gauges_joint(tmp_path, 3, **half)
+    step = 3.5 / 2**16
+    for j in range(3):
+        codes = np.clip(np.round((run.volts[:, j] + 1.75) / step), 0, 2**16 - 1)
+        columns[f"g{j + 1}"] = codes.astype(np.int32)
+    write_parquet(log, columns)
+    ended = call(
+        *("calibrate", "fluctuation", log, "--map", "angle=beta_rad,gauges=g1+g2+g3:counts"),
+        *("--harmonics", 1, "--joint", file, "--out", file),
+    )
+    assert ended.code == 0
+    assert "gauge 3 is at an end of the converter's range" in ended.err
+    assert "gauge 1 is at an end" not in ended.err
 
 
 @pytest.mark.parametrize("suffix", ["svg", "png", "pdf"])

@@ -72,6 +72,37 @@ def delayed_angle(
     return np.interp(time_s - delay_s, time_s, motor_angle_rad)
 
 
+def delayed_in_stretches(
+    motor_angle_rad: NDArray[np.float64],
+    time_s: NDArray[np.float64],
+    delay_s: float,
+    stretches: NDArray[np.int64],
+) -> NDArray[np.float64]:
+    """Take a delay out of each uninterrupted stretch by itself.
+
+    Parameters
+    ----------
+    motor_angle_rad, time_s : numpy.ndarray
+        Angle, rad, and time, s, shape (samples,); the time rises within a stretch.
+    delay_s : float
+        Time by which the gauges lag.
+    stretches : numpy.ndarray
+        Number of each sample's stretch, shape (samples,).
+
+    Returns
+    -------
+    numpy.ndarray
+        Angle at time - delay, rad, shape (samples,).
+    """
+    if delay_s == 0:
+        return motor_angle_rad
+    shifted = np.empty_like(motor_angle_rad)
+    for stretch in np.unique(stretches):
+        rows = stretches == stretch
+        shifted[rows] = delayed_angle(motor_angle_rad[rows], time_s[rows], delay_s)
+    return shifted
+
+
 def fit_timing(
     signals: NDArray[np.float64],
     motor_angle_rad: NDArray[np.float64],

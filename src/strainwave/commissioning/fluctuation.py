@@ -18,7 +18,7 @@ from strainwave.calibrate.gain_solution import OverGrid, solve_gains
 from strainwave.calibrate.gains import MOST_NOISE
 from strainwave.calibrate.lost_gauge import gains_without_each
 from strainwave.calibrate.quantise import parse_circuit, quantise_gains
-from strainwave.calibrate.wave_timing import delayed_angle
+from strainwave.calibrate.wave_timing import delayed_in_stretches
 from strainwave.commissioning.conditions import Condition, conditions_of
 from strainwave.commissioning.fluctuation_result import FluctuationCalibration
 from strainwave.commissioning.fluctuation_warnings import warnings_of_fit, warnings_of_gains
@@ -154,7 +154,7 @@ def calibrate_fluctuation(
     positions_rad, said = gauge_positions_rad(joint, gauges)
     conditions, more = conditions_of(table)
     said += more + saturation_warnings(volts, joint)
-    timing, more = _timing(table, joint, options)
+    timing, more = _timing(table, conditions, joint, options)
     said += more
     runs = tuple(
         _run(table, condition, positions_rad, options.harmonics, timing, sensitivities)
@@ -209,7 +209,10 @@ def _check_harmonics(harmonics: int) -> None:
 
 
 def _timing(
-    table: Table, joint: Joint | None, options: FluctuationOptions
+    table: Table,
+    conditions: Sequence[Condition],
+    joint: Joint | None,
+    options: FluctuationOptions,
 ) -> tuple[Timing, tuple[str, ...]]:
     if "angle" not in table:
         for name, given in (
@@ -227,6 +230,7 @@ def _timing(
     told = told_factor(joint, options.ratio, options.configuration)
     return found_timing(
         table,
+        conditions,
         joint,
         told,
         harmonics=options.harmonics,
@@ -251,10 +255,10 @@ def _run(
                 volts, positions_rad=positions_rad, torque_sensitivities=sensitivities
             ).wave_angle_rad
         else:
-            angle = table.values["angle"]
+            angle = table.values["angle"][rows]
             if timing.delay_s != 0:
-                angle = delayed_angle(angle, table.values["time"], timing.delay_s)
-            angle = angle[rows]
+                time_s = table.values["time"][rows]
+                angle = delayed_in_stretches(angle, time_s, timing.delay_s, condition.stretches)
         turned = np.ptp(angle) * (timing.factor or 1.0)
         # More harmonics than the run can tell apart are not fitted.
         beyond = int(np.clip((len(rows) - 2) // 8 - harmonics, 0, HARMONICS_BEYOND))

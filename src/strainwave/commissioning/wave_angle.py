@@ -11,8 +11,9 @@ from strainwave.calibrate.wave_timing import WaveTiming, fit_timing
 from strainwave.errors import InputError
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from collections.abc import Sequence
 
+    from strainwave.commissioning.conditions import Condition
     from strainwave.commissioning.gauge_table import ToldFactor
     from strainwave.joint import Joint
     from strainwave.records.table import Table
@@ -49,6 +50,7 @@ class Timing:
 
 def found_timing(
     table: Table,
+    conditions: Sequence[Condition],
     joint: Joint | None,
     told: ToldFactor,
     *,
@@ -62,6 +64,8 @@ def found_timing(
     ----------
     table : Table
         With ``angle`` and ``gauges``.
+    conditions : sequence of Condition
+        Loads and temperatures; the wave is looked at where most rows are.
     joint : Joint or None
         Its ``[signals]`` may tell the delay.
     told : ToldFactor
@@ -81,8 +85,10 @@ def found_timing(
     InputError
         If they cannot be taken from this recording, or its time does not rise.
     """
-    angle, volts = table.values["angle"], table.values["gauges"]
-    time_s = table.values.get("time")
+    longest = max(conditions, key=lambda each: len(each.rows))
+    rows = longest.rows[longest.stretches == np.argmax(np.bincount(longest.stretches))]
+    angle, volts = table.values["angle"][rows], table.values["gauges"][rows]
+    time_s = table.values["time"][rows] if "time" in table else None
     signals = None if joint is None else joint.signals
     delay_s = 0.0 if signals is None else signals.angle_to_torque_delay_s or 0.0
     said: list[str] = []
@@ -98,7 +104,7 @@ def found_timing(
         )
         delay_s = 0.0
     if (delay_s or fit_delay) and time_s is not None:
-        _require_rising(table, time_s)
+        _require_rising(table, conditions)
     turns = float(np.ptp(angle)) / (2 * np.pi)
     if turns < FEWEST_TURNS or len(angle) < 16 * (harmonics + 2):
         if fit_factor or fit_delay:
@@ -125,11 +131,15 @@ def found_timing(
     return Timing(told.factor, found, found.delay_s), tuple(said)
 
 
-def _require_rising(table: Table, time_s: NDArray[np.float64]) -> None:
-    falls = np.flatnonzero(np.diff(time_s) <= 0)
-    if len(falls):
+def _require_rising(table: Table, conditions: Sequence[Condition]) -> None:
+    for condition in conditions:
+        stays = np.diff(table.values["time"][condition.rows]) <= 0
+        falls = np.flatnonzero(stays & (np.diff(condition.stretches) == 0))
+        if len(falls) == 0:
+            continue
+        row = condition.rows[falls[0] + 1] + 1
         raise InputError(
-            f"{table.source}: row {falls[0] + 2}, {table.labels['time'][0]} does not rise; "
+            f"{table.source}: row {row}, {table.labels['time'][0]} does not rise; "
             "expected times that rise from row to row where a delay is taken out, so sort the "
             "recording or leave the delay out"
         )
