@@ -9,9 +9,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from helpers.gauge_logs import station_of, turns_of
 from strainwave.calibrate.degenerate import reasons
 from strainwave.calibrate.fluctuation import equally_spaced_positions_rad
-from strainwave.calibrate.fluctuation_run import FluctuationRun
+from strainwave.calibrate.fluctuation_run import FluctuationRun, fit_run
 from strainwave.calibrate.gain_solution import solve_gains
 from strainwave.calibrate.gains import compensating_gains
 from strainwave.calibrate.lost_gauge import gains_without_each
@@ -215,3 +216,21 @@ def test_a_gauge_that_hardly_sees_the_wave_is_named() -> None:
 def test_no_reason_is_invented_for_good_gauges() -> None:
     rng = np.random.default_rng(1)
     assert reasons(run_of(phasors_of(rng, 5, 2)).conditions((1, 2)), (1, 2)) == ()
+
+
+def test_claimed_uncertainty_covers_what_runs_scatter_by() -> None:
+    station = station_of(3)
+    found = []
+    for seed in range(30):
+        run = turns_of(station, 1.0, seed)
+        fit = fit_run(
+            run.volts,
+            run.motor_angle_rad,
+            positions_rad=equally_spaced_positions_rad(3),
+            harmonics=4,
+        )
+        found.append(solve_gains([fit], (1,)))
+    scatter = np.std([each.gains for each in found], axis=0)
+    claimed = np.mean([each.standard_uncertainties for each in found], axis=0)
+    assert np.all(scatter < 1.2 * claimed)
+    assert np.all(scatter > 0.5 * claimed)

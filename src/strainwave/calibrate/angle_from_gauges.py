@@ -19,24 +19,25 @@ import numpy as np
 
 from strainwave.arrays import contiguous
 from strainwave.calibrate.checks import require_finite, whole_number
-from strainwave.calibrate.fluctuation_run import wave_columns
+from strainwave.calibrate.closed_curve import (
+    FLATTEST,
+    ClosedCurve,
+    best_curve,
+    ellipse_of,
+    nearest_angle_rad,
+    require_whole,
+)
 from strainwave.errors import InputError
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-#: Phases that are tried before Newton's steps.
-START_PHASES: Final = 64
-NEWTON_STEPS: Final = 6
 #: Rows at a time, so that memory stays small.
 CHUNK_ROWS: Final = 20_000
 #: Samples that the curve is fitted to; more do not make it better than their noise.
 MOST_FITTED: Final = 3_000
-MOST_ROUNDS: Final = 30
 #: Harmonics of the curve that are tried where their number is not told.
 MOST_HARMONICS: Final = 4
-#: Smaller over larger extent of the curve below which it is a line and shows no angle.
-FLATTEST: Final = 0.02
 
 AMBIGUITY: Final = (
     "the angle is that of the wave against the gauges, modulo pi; its zero is where the first "
@@ -131,11 +132,11 @@ class GaugeResolver:
             )
         require_finite("signals", signal, "row", "column")
         basis = _without_torque(self.torque_sensitivities)
-        curve = _Curve(np.zeros(basis.shape[1]), _parts(self.phasors) @ basis)
+        curve = ClosedCurve(np.zeros(basis.shape[1]), _parts(self.phasors) @ basis)
         points = (signal - self.offsets) @ basis
         angle = np.concatenate(
             [
-                _nearest(curve, points[start : start + CHUNK_ROWS])
+                nearest_angle_rad(curve, points[start : start + CHUNK_ROWS])
                 for start in range(0, max(1, len(points)), CHUNK_ROWS)
             ]
         )
@@ -163,27 +164,6 @@ class SelfCalibration:
     resolver: GaugeResolver
     wave_angle_rad: NDArray[np.float64]
     distance_rms: float
-
-
-@dataclass(frozen=True)
-class _Curve:
-    """A closed curve: centre and coefficients of sin(2 i phi), cos(2 i phi)."""
-
-    centre: NDArray[np.float64]
-    parts: NDArray[np.float64]
-
-    @property
-    def harmonics(self) -> int:
-        return len(self.parts) // 2
-
-    def at(self, angle_rad: NDArray[np.float64]) -> NDArray[np.float64]:
-        return np.asarray(self.centre + wave_columns(angle_rad, self.harmonics) @ self.parts)
-
-    def derivative(self) -> _Curve:
-        order = 2.0 * np.arange(1, self.harmonics + 1)[:, np.newaxis]
-        parts = np.empty_like(self.parts)
-        parts[0::2], parts[1::2] = -order * self.parts[1::2], order * self.parts[0::2]
-        return _Curve(np.zeros_like(self.centre), parts)
 
 
 def calibrate_without_angle(
@@ -242,12 +222,12 @@ def calibrate_without_angle(
     basis = _without_torque(torque.astype(np.float64))
     points = signal @ basis
     chosen = points[np.linspace(0, len(points) - 1, min(len(points), MOST_FITTED)).astype(int)]
-    curve, start = _ellipse(chosen)
-    _require_whole(start)
-    curve = _oriented(_best(curve, chosen, start, tried), basis, position)
+    curve, start = ellipse_of(chosen)
+    require_whole(start)
+    curve = _oriented(best_curve(curve, chosen, start, tried), basis, position)
     nearest = np.concatenate(
         [
-            _nearest(curve, points[first : first + CHUNK_ROWS])
+            nearest_angle_rad(curve, points[first : first + CHUNK_ROWS])
             for first in range(0, len(points), CHUNK_ROWS)
         ]
     )
@@ -274,120 +254,9 @@ def _complex(parts: NDArray[np.float64]) -> NDArray[np.complex128]:
     return np.asarray(parts[0::2] + 1j * parts[1::2])
 
 
-def _nearest(curve: _Curve, points: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Angle of the nearest place on the curve: the best of many phases, then Gauss-Newton."""
-    phases = np.arange(START_PHASES) * np.pi / START_PHASES
-    places = curve.at(phases)
-    away = np.sum(places**2, axis=1) - 2 * points @ places.T
-    return _refined(curve, points, phases[np.argmin(away, axis=1)])
-
-
-def _refined(
-    curve: _Curve,
-    points: NDArray[np.float64],
-    start: NDArray[np.float64],
-    steps: int = NEWTON_STEPS,
-) -> NDArray[np.float64]:
-    angle = start
-    slope_of = curve.derivative()
-    for _ in range(steps):
-        slope = slope_of.at(angle)
-        along = np.sum(slope * (points - curve.at(angle)), axis=1)
-        square = np.maximum(np.sum(slope**2, axis=1), np.finfo(float).tiny)
-        # Never further than to the next phases that were tried.
-        angle = angle + np.clip(along / square, -np.pi / START_PHASES, np.pi / START_PHASES)
-    return angle
-
-
-def _ellipse(points: NDArray[np.float64]) -> tuple[_Curve, NDArray[np.float64]]:
-    """Conic through the two largest directions of the points, and the angle along it."""
-    middle = points.mean(axis=0)
-    spread = np.linalg.svd(points - middle, full_matrices=False)
-    scale = spread[1] / np.sqrt(len(points))
-    if not scale[1] > FLATTEST * scale[0]:
-        raise InputError(
-            "the gauges draw a line and no closed curve: expected at least half a turn of the wave "
-            "seen at different phases; turn the wave generator further, or record its angle"
-        )
-    plane = spread[2][:2].T
-    x, y = ((points - middle) @ plane / scale[:2]).T
-    conic = np.linalg.lstsq(
-        np.column_stack([x * x, x * y, y * y, x, y]), np.ones(len(x)), rcond=None
-    )[0]
-    shape = np.array([[conic[0], conic[1] / 2], [conic[1] / 2, conic[2]]])
-    values, vectors = np.linalg.eigh(shape)
-    if values[0] <= 0:
-        raise InputError(
-            "the gauges draw no closed curve: expected at least half a turn of the wave at about "
-            "constant conditions; turn the wave generator further, or record its angle"
-        )
-    centre = -np.linalg.solve(shape, conic[3:]) / 2
-    radius = np.sqrt((1 + centre @ shape @ centre) / values)
-    turned = (np.column_stack([x, y]) - centre) @ vectors / radius
-    angle = np.arctan2(turned[:, 0], turned[:, 1]) / 2
-    parts = (vectors * radius * scale[:2, np.newaxis]).T @ plane.T
-    return _Curve(middle + (centre * scale[:2]) @ plane.T, parts), np.mod(angle, np.pi)
-
-
-def _require_whole(angle_rad: NDArray[np.float64]) -> None:
-    """Refuse a run that leaves a part of the curve out: nobody knows what happens there."""
-    passed = np.sort(np.mod(angle_rad, np.pi))
-    gap = np.max(np.diff(np.concatenate([passed, passed[:1] + np.pi])))
-    if gap > np.pi / 4:
-        raise InputError(
-            f"the gauges leave {np.rad2deg(gap):.0f} of 180 degrees of the wave out: expected a run "
-            "over at least half a turn, in many samples; turn the wave generator further, or "
-            "record its angle"
-        )
-
-
-def _best(
-    ellipse: _Curve, points: NDArray[np.float64], start: NDArray[np.float64], tried: range
-) -> _Curve:
-    """Fitted curve with the number of harmonics that the points speak for."""
-    best, least = ellipse, np.inf
-    for count in tried:
-        parts = np.zeros((2 * count, points.shape[1]))
-        parts[:2] = ellipse.parts
-        curve = _fitted(_Curve(ellipse.centre, parts), points, start)
-        away = points - curve.at(_refined(curve, points, start))
-        rows, directions = points.shape
-        # Each point is free along the curve; a shift of all angles takes one parameter away.
-        spread = float(np.sum(away**2)) / (rows * (directions - 1)) + np.finfo(float).tiny
-        parameters = (2 * count + 1) * directions - 1
-        price = rows * (directions - 1) * np.log(spread) + parameters * np.log(rows)
-        if price >= least:
-            break
-        best, least = curve, price
-    return best
-
-
-def _fitted(curve: _Curve, points: NDArray[np.float64], start: NDArray[np.float64]) -> _Curve:
-    """Curve of least distance: Gauss-Newton steps with every sample's angle eliminated."""
-    angle = start
-    directions = points.shape[1]
-    size = (2 * curve.harmonics + 1) * directions
-    for _ in range(MOST_ROUNDS):
-        angle = _refined(curve, points, angle, steps=2)
-        columns = np.column_stack([np.ones(len(points)), wave_columns(angle, curve.harmonics)])
-        slope = curve.derivative().at(angle)
-        slope = slope / np.maximum(np.linalg.norm(slope, axis=1, keepdims=True), 1e-300)
-        across = np.eye(directions) - slope[:, :, np.newaxis] * slope[:, np.newaxis, :]
-        away = np.einsum("nde,ne->nd", across, points - curve.at(angle))
-        paired = columns[:, :, np.newaxis] * columns[:, np.newaxis, :]
-        normal = np.einsum("nab,nde->adbe", paired, across, optimize=True).reshape(size, size)
-        right = (columns.T @ away).ravel()
-        # Shifting all angles changes nothing: that direction has no step.
-        step = np.linalg.lstsq(normal, right, rcond=1e-9)[0].reshape(-1, directions)
-        curve = _Curve(curve.centre + step[0], curve.parts + step[1:])
-        if np.max(np.abs(step)) <= 1e-9 * np.max(np.abs(curve.parts)):
-            break
-    return curve
-
-
 def _oriented(
-    curve: _Curve, basis: NDArray[np.float64], positions_rad: NDArray[np.float64]
-) -> _Curve:
+    curve: ClosedCurve, basis: NDArray[np.float64], positions_rad: NDArray[np.float64]
+) -> ClosedCurve:
     """Turn the curve in the gauges' direction, with its zero at gauge 1."""
     phasors = _complex(curve.parts @ basis.T)
     expected = np.exp(-2j * positions_rad)
@@ -398,4 +267,4 @@ def _oriented(
         phasors = mirrored
     lead = float(np.angle(phasors[0, 0] * expected[0]))
     order = np.arange(1, len(phasors) + 1)[:, np.newaxis]
-    return _Curve(curve.centre, _parts(phasors * np.exp(-1j * order * lead)) @ basis)
+    return ClosedCurve(curve.centre, _parts(phasors * np.exp(-1j * order * lead)) @ basis)

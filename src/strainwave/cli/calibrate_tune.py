@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 import cyclopts
 
 if TYPE_CHECKING:
-    from strainwave.commissioning.tune import Tuning
+    from strainwave.commissioning.tune_result import Tuning
 
 
 def tune(

@@ -24,14 +24,12 @@ from strainwave.commissioning.fluctuation_result import FluctuationCalibration
 from strainwave.commissioning.fluctuation_warnings import warnings_of_fit, warnings_of_gains
 from strainwave.commissioning.gains_section import gains_section, rms_left
 from strainwave.commissioning.gauge_table import (
-    GearConfiguration,
     gauge_positions_rad,
-    parse_sensitivities,
     read_gauges,
     require_signals,
     saturation_warnings,
-    told_factor,
 )
+from strainwave.commissioning.told import GearConfiguration, parse_sensitivities, told_factor
 from strainwave.commissioning.wave_angle import Timing, found_timing
 from strainwave.errors import InputError
 from strainwave.joint import Provenance, new_joint, read_joint, write_joint

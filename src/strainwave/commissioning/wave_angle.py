@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from strainwave.commissioning.conditions import Condition
-    from strainwave.commissioning.gauge_table import ToldFactor
+    from strainwave.commissioning.told import ToldFactor
     from strainwave.joint import Joint
     from strainwave.records.table import Table
 
