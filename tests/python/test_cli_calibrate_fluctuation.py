@@ -24,6 +24,7 @@ from strainwave.calibrate.fluctuation import equally_spaced_positions_rad
 from strainwave.calibrate.fluctuation_run import fit_run
 from strainwave.joint import build_section, new_joint, read_joint, write_joint
 from strainwave.joint.provenance import Provenance
+from strainwave.simulate.presets.godler2000 import godler2000
 from strainwave.simulate.trajectories import PiecewiseLinear, Sine
 
 Call = Any
@@ -140,6 +141,16 @@ def test_two_gauges_reach_the_least_residual_and_say_so(tmp_path: Path, call: Ca
     assert opposite.result["residual_after"][0] < opposite.result["residual_before"][0]
     assert "The fluctuation does not vanish" in opposite.err
     assert "2 gauges are fewer than the 3" in opposite.err
+
+
+def test_a_harmonic_that_looks_like_torque_is_said(tmp_path: Path, call: Call) -> None:
+    log = write_run(tmp_path / "run.parquet", turns_of(godler2000(2), 2.0, 3))
+    ended = calibrate(
+        *(call, log, 2, 2, tmp_path / "j.toml", "--ratio", 50),
+        *("--configuration", "circular-spline-fixed"),
+    )
+    assert "harmonic 2 has nearly one phase on all 2 gauges, as torque has" in ended.err
+    assert not ended.result["is_exact"]
 
 
 def test_gauges_at_one_place_are_refused(tmp_path: Path, call: Call) -> None:
@@ -415,6 +426,7 @@ BASE = {
 @pytest.mark.parametrize(
     ("changed", "words"),
     [
+        ({"--map": "angle=beta_rad,gauges=g1_V"}, "1 gauge column is mapped"),
         ({"--map": "angle=beta_rad"}, "nothing is mapped for gauges"),
         ({"--map": "angle=beta_rad,gauges=g1_V+g9_V"}, "g9_V"),
         ({"--map": "angle=beta_rad,gauges=g1_V+g1_V"}, "mapped twice for gauges"),

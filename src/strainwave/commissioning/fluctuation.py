@@ -145,6 +145,11 @@ def calibrate_fluctuation(
     table = read_gauges(log, options.mapping, FLUCTUATION_KEYS, joint)
     volts = table.values["gauges"]
     gauges = volts.shape[1]
+    if gauges < 2:
+        raise InputError(
+            f"--map: {gauges} gauge column is mapped; expected at least two that can be weighed "
+            "against each other, 2N + 1 to cancel N harmonics, so map gauges=COLUMN+COLUMN+..."
+        )
     require_signals(table, volts)
     sensitivities, has_sensitivities = parse_sensitivities(
         options.torque_sensitivity, joint, gauges

@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from strainwave.calibrate.degenerate import reasons
+
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
@@ -88,6 +90,12 @@ def warnings_of_gains(
         Empty where nothing is unusual.
     """
     said = list(solution.warnings)
+    if not solution.is_exact:
+        stacked = np.vstack([run.conditions(solution.harmonics) for run in runs])
+        said += [
+            f"what is left has a reason: {clause}"
+            for clause in reasons(stacked, solution.harmonics)
+        ]
     uncertain = solution.standard_uncertainties
     if uncertain.max() > UNCERTAIN_GAIN:
         said.append(
