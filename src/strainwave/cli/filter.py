@@ -23,6 +23,7 @@ def filter_command(
     method: str | None = None,
     rated_torque: float | None = None,
     rate: float | None = None,
+    absolute_angle: bool = False,
     report: Path | None = None,
     json: bool = False,
 ) -> None:
@@ -54,6 +55,9 @@ def filter_command(
         Full scale, Nm; estimated from the recording where nothing says it.
     rate : float
         Rows a second, Hz, where the recording has no column of time.
+    absolute_angle : bool
+        The motor's angle counts from where the output is at 0: removes the joint file's misalignment,
+        which is otherwise removed only by an angle of the output.
     report : Path
         A page that shows what was done, for a browser or to print: .html.
     json : bool
@@ -73,6 +77,7 @@ def filter_command(
         ratio=None if ratio is None else parse_ratio(ratio),
         rated_torque_Nm=rated_torque,
         rate_Hz=rate,
+        absolute_angle=absolute_angle,
     )
     console = progress_console()
     with Bar(
@@ -110,6 +115,7 @@ def filter_command(
                 "--method": method,
                 "--rated-torque": rated_torque,
                 "--rate": rate,
+                "--absolute-angle": absolute_angle or None,
                 "--out": out,
                 "--report": report,
             }
@@ -140,6 +146,11 @@ def _summary(result: FilteredLog) -> list[str]:
         source = "chosen on the recording" if settings.is_chosen else "as told or standard"
         lines.append(
             f"  memory {settings.config.memory_turns:g} motor turns, {settings.terms}: {source}"
+        )
+    if result.misalignment_terms:
+        lines.append(
+            f"  misalignment of the joint file removed, {result.misalignment_terms} terms: the output's "
+            "angle has to count from where it did in the commissioning run"
         )
     if result.ripple_rms_Nm is not None:
         lines.append(

@@ -35,7 +35,7 @@ def command_line(
     mapping : tuple of str
         Values of ``--map``.
     options : mapping
-        Further options by name; None where one was not given.
+        Further options by name; None where one was not given, True where it stands alone.
     between : str
         What stands between the options, such as `LINE_AFTER_LINE`.
 
@@ -45,13 +45,17 @@ def command_line(
         Quoted for a shell.
     """
     parts = [["strainwave", name, str(log)], *(["--map", text] for text in mapping)]
-    # A number as a person writes it: 100 and not 100.0.
     parts += [
-        [option, str(value).removesuffix(".0") if isinstance(value, float) else str(value)]
+        [option] if value is True else [option, _text(value)]
         for option, value in options.items()
         if value is not None
     ]
     return between.join(shlex.join(words) for words in parts)
+
+
+def _text(value: object) -> str:
+    # A number as a person writes it: 100 and not 100.0.
+    return str(value).removesuffix(".0") if isinstance(value, float) else str(value)
 
 
 def check_report(report: Path | None, out: Path, *inputs: Path | None) -> None:

@@ -1,6 +1,11 @@
 """From a joint file to the core's configuration: what the file knows, checked by the core."""
 
-from strainwave.configuration.filters import learned_of, oscillator_filter_of, ripple_filter_of
+from strainwave.configuration.filters import (
+    frozen_terms_of,
+    learned_of,
+    oscillator_filter_of,
+    ripple_filter_of,
+)
 from strainwave.configuration.sensor import (
     calibration_of,
     converter_of,
@@ -13,6 +18,7 @@ from strainwave.configuration.sensor import (
 __all__ = [
     "calibration_of",
     "converter_of",
+    "frozen_terms_of",
     "gains_of",
     "gear_of",
     "learned_of",

@@ -96,7 +96,7 @@ def ripple_filter_of(joint: Joint) -> _core.RippleFilterConfig:
         given["rated_torque_Nm"] = joint.gear.rated_torque_Nm
     if joint.signals is not None and joint.signals.angle_to_torque_delay_s is not None:
         given["angle_to_torque_delay_s"] = joint.signals.angle_to_torque_delay_s
-    frozen = _frozen_terms(joint)
+    frozen = frozen_terms_of(joint)
     try:
         return _core.RippleFilterConfig(
             orders=_ripple_orders(joint, section),
@@ -201,8 +201,24 @@ def _ripple_orders(joint: Joint, section: RippleFilter) -> list[_core.RippleOrde
     ]
 
 
-def _frozen_terms(joint: Joint) -> list[_core.FrozenTerm]:
-    """Take the misalignment from the output's angle to the motor's."""
+def frozen_terms_of(joint: Joint) -> list[_core.FrozenTerm]:
+    """Take the misalignment from the output's angle to the motor's.
+
+    Parameters
+    ----------
+    joint : Joint
+        A joint; with ``[gear]`` where it has ``[misalignment]``.
+
+    Returns
+    -------
+    list of FrozenTerm
+        What the ripple filter removes without learning; empty without ``[misalignment]``.
+
+    Raises
+    ------
+    InputError
+        If ``[gear]`` is missing, or there are more terms than the core has room for.
+    """
     misalignment = joint.misalignment
     if misalignment is None:
         return []

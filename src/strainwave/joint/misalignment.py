@@ -18,6 +18,9 @@ class MisalignmentTerm(FilePart):
     )
     cosine_Nm: Annotated[float, Unit("Nm")] = Field(description="Amplitude of the cosine, a_n")
     sine_Nm: Annotated[float, Unit("Nm")] = Field(description="Amplitude of the sine, b_n")
+    standard_uncertainty_Nm: Annotated[float, Unit("Nm")] | None = Field(
+        default=None, ge=0.0, description="Standard uncertainty of the amplitude"
+    )
 
 
 class Misalignment(Section):
@@ -33,6 +36,29 @@ class Misalignment(Section):
     terms: ListOf[MisalignmentTerm] = Field(
         min_length=1, description="The components, each number of cycles once"
     )
+    lowest_output_angle_rad: Annotated[float, Unit("rad")] | None = Field(
+        default=None,
+        description="Lowest output angle at which the terms were measured; absent where it was a "
+        "whole turn",
+    )
+    highest_output_angle_rad: Annotated[float, Unit("rad")] | None = Field(
+        default=None, description="Highest output angle at which the terms were measured"
+    )
+
+    @model_validator(mode="after")
+    def _range_is_one(self) -> Misalignment:
+        low, high = self.lowest_output_angle_rad, self.highest_output_angle_rad
+        if (low is None) != (high is None):
+            raise ValueError(
+                "gives one end of the range of angles only; expected lowest_output_angle_rad and "
+                "highest_output_angle_rad together, or neither"
+            )
+        if low is not None and high is not None and low >= high:
+            raise ValueError(
+                f"has lowest_output_angle_rad = {low:g} and highest_output_angle_rad = {high:g}; "
+                "expected the highest above the lowest, so check whether the two were swapped"
+            )
+        return self
 
     @model_validator(mode="after")
     def _terms_differ(self) -> Misalignment:

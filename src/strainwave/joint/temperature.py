@@ -31,6 +31,12 @@ class Temperature(Section):
     gain_drift_per_K: Annotated[float, Unit("1/K")] = Field(
         description="Relative change of the gain with temperature"
     )
+    zero_drift_standard_uncertainty_V_per_K: Annotated[float, Unit("V/K")] | None = Field(
+        default=None, ge=0.0, description="Standard uncertainty of zero_drift_V_per_K"
+    )
+    gain_drift_standard_uncertainty_per_K: Annotated[float, Unit("1/K")] | None = Field(
+        default=None, ge=0.0, description="Standard uncertainty of gain_drift_per_K"
+    )
     lowest_temperature_degC: Annotated[float, Unit("degC")] | None = Field(
         default=None,
         ge=_COLDEST_DEGC,

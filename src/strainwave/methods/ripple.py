@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from strainwave import _core
-from strainwave.configuration import learned_of, ripple_filter_of
+from strainwave.configuration import frozen_terms_of, learned_of, ripple_filter_of
 from strainwave.identify.ripple_settings import RippleSettings, Terms, choose_ripple_settings
 from strainwave.methods.interface import Cleaned, nothing
 from strainwave.ripple_filter import RippleFilter
@@ -41,7 +41,8 @@ def ripple_settings(setting: Setting) -> RippleSettings:
 
     That which the setting brings along; else that of the joint file's ``[ripple_filter]`` of method ``"ripple"``, where there is one; else orders
     2, 4 and 6 of the wave, with memory and terms chosen by likelihood on an excerpt of the recording;
-    else the standard memory and constant terms.
+    else the standard memory and constant terms. The joint file's ``[misalignment]`` is removed frozen
+    in each case.
 
     Parameters
     ----------
@@ -71,6 +72,7 @@ def ripple_settings(setting: Setting) -> RippleSettings:
         "torque_walk_Nm_per_sqrt_s": STANDARD_WALK_PER_SQRT_S * rated,
         "initial_amplitude_Nm": STANDARD_INITIAL_AMPLITUDE * rated,
         "rated_torque_Nm": rated,
+        "frozen": [] if setting.joint is None else frozen_terms_of(setting.joint),
     }
     if setting.excerpt is None:
         config = _core.RippleFilterConfig(

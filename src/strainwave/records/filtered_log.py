@@ -42,6 +42,8 @@ class FilteredLog:
         "joint file", "recording" or "assumed".
     ripple_settings : RippleSettings or None
         What the ripple filter was told or chose; None for other methods.
+    misalignment_terms : int
+        Terms of the joint file's misalignment that were removed.
     rows_by_flag : dict
         Rows by the name of the status flag that they bear.
     torque_before_rms_Nm, torque_after_rms_Nm, ripple_rms_Nm : float or None
@@ -58,6 +60,7 @@ class FilteredLog:
     wave_factor: float = 1.0
     wave_factor_source: str = "assumed"
     ripple_settings: RippleSettings | None = None
+    misalignment_terms: int = 0
     rows_by_flag: dict[str, int] = field(default_factory=dict)
     torque_before_rms_Nm: float | None = None
     torque_after_rms_Nm: float | None = None
@@ -86,6 +89,7 @@ class FilteredLog:
                 "load_inertia_kg_m2": layout.load_inertia_kg_m2,
                 "wave_factor": self.wave_factor,
                 "wave_factor_source": self.wave_factor_source,
+                "misalignment_terms": self.misalignment_terms,
                 **self._of_the_ripple_filter(),
             },
             "rated_torque_Nm": self.rated_torque_Nm,

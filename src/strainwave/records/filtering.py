@@ -29,6 +29,7 @@ from strainwave.records.method_setting import (
     read_excerpt,
     remarks_on,
 )
+from strainwave.records.misalignment import misalignment_as_read
 from strainwave.records.opening import open_recording
 from strainwave.records.options import Options
 from strainwave.records.passes import Progress, sample_rows, survey_recording, untold
@@ -107,7 +108,10 @@ def filter_log(
     survey = survey_recording(recording, layout, found, progress)
     check_survey(recording.source, layout, found, survey)
     rated_Nm = layout.rated_torque_Nm or estimated_rated_torque_Nm(survey)
-    joint = joint_as_asked(joint, options)
+    misalignment = misalignment_as_read(
+        joint_as_asked(joint, options), name, layout, survey, is_absolute=options.absolute_angle
+    )
+    joint = misalignment.joint
     excerpt = read_excerpt(sample_rows(recording, layout, found, survey))
     wave = choose_wave_factor(joint, layout.ratio, excerpt)
     setting = Setting(survey.sample_period_s, layout.ratio, rated_Nm, joint, wave.factor, excerpt)
@@ -120,10 +124,11 @@ def filter_log(
         survey,
         name,
         rated_Nm,
-        (*warnings_of(layout, survey, rated_Nm), *remarks_on(wave), *swallowed),
+        (*warnings_of(layout, survey, rated_Nm), *misalignment.says, *remarks_on(wave), *swallowed),
         wave_factor=float(wave.factor),
         wave_factor_source=wave.source,
         ripple_settings=getattr(remover, "settings", None),
+        misalignment_terms=misalignment.terms,
     )
     if watch is not None:
         # With what was chosen: who builds it once more gets the same.

@@ -93,29 +93,31 @@ def joint_as_asked(joint: Joint | None, options: Options) -> Joint | None:
     return joint.model_copy(update={"gear": joint.gear.model_copy(update=changes)})
 
 
-def read_excerpt(rows: Iterator[Rows]) -> Samples:
+def read_excerpt(rows: Iterator[Rows], most_rows: int = MOST_ROWS) -> Samples:
     """Read the start of a recording, for choices that are made on it.
 
     Parameters
     ----------
     rows : iterator of Rows
         The recording; no more of it is read than is needed.
+    most_rows : int
+        How many rows.
 
     Returns
     -------
     Samples
-        At most `MOST_ROWS` rows.
+        At most so many rows.
     """
     parts, count = [], 0
     for part in rows:
         parts.append(part.samples)
         count += len(part)
-        if count >= MOST_ROWS:
+        if count >= most_rows:
             break
 
     def together(name: str) -> NDArray[np.float64]:
         arrays = [np.empty(0), *(getattr(part, name) for part in parts)]
-        return np.concatenate(arrays)[:MOST_ROWS]
+        return np.concatenate(arrays)[:most_rows]
 
     return Samples(
         together("time_s"),

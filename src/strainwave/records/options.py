@@ -34,6 +34,8 @@ class Options:
         Full scale, Nm.
     rate_Hz : float or None
         Rate of the rows where there is no column of time, Hz.
+    absolute_angle : bool
+        The motor's angle counts from where the output is at 0.
     """
 
     mapping: Mapping[str, MappedColumn] = field(default_factory=dict)
@@ -41,6 +43,7 @@ class Options:
     ratio: Fraction | None = None
     rated_torque_Nm: float | None = None
     rate_Hz: float | None = None
+    absolute_angle: bool = False
 
 
 def parse_ratio(text: str) -> Fraction:

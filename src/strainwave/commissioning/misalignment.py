@@ -1,0 +1,412 @@
+"""Recordings in free motion in, ``[misalignment]`` of a joint file out."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import asdict, dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from strainwave.calibrate.free_motion import FreeMotion, free_motion
+from strainwave.calibrate.misalignment import (
+    Gravity,
+    GravityKnowledge,
+    MapCheck,
+    MapTerm,
+    MisalignmentFit,
+    check_map,
+    fit_misalignment,
+)
+from strainwave.errors import InputError
+from strainwave.joint import Provenance, build_section, new_joint, read_joint, write_joint
+from strainwave.records.checks import check_survey
+from strainwave.records.columns import find_columns
+from strainwave.records.findings import warnings_of
+from strainwave.records.joint_output import check_joint_output
+from strainwave.records.layout import build_layout
+from strainwave.records.method_setting import choose_wave_factor, joint_as_asked, read_excerpt
+from strainwave.records.opening import open_recording
+from strainwave.records.passes import sample_rows, survey_recording
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from strainwave.joint import Joint
+    from strainwave.records.layout import Layout
+    from strainwave.records.options import Options
+    from strainwave.samples import Samples
+
+#: Rows of a recording that are read.
+MOST_ROWS: Final = 2_000_000
+#: A run of so many output turns, to and fro added up, checks itself: the map of its first part on the
+#: rest.
+TURNS_FOR_CHECK: Final = 4.0
+FIRST_PART: Final = 0.6
+#: Coefficients beyond so many standard uncertainties are taken to be there.
+_CLEAR: Final = 3.0
+
+
+@dataclass(frozen=True)
+class FreeMotionTask:
+    """What is to be commissioned, and what is known beforehand.
+
+    Attributes
+    ----------
+    gravity : Gravity or None
+        Torque of the load's weight; None where it is not known.
+    turned : tuple of (Path, float)
+        More recordings, with the housing turned by so many degrees about the joint's axis, in the
+        output's positive sense, against the first one.
+    check : Path or None
+        A recording that checks the map; without, the last part of the first one does.
+    cycles : tuple of int or None
+        Cycles per output turn; those with evidence without.
+    zero_angle_deg : float
+        Output angle from which the map counts.
+    """
+
+    gravity: Gravity | None = None
+    turned: tuple[tuple[Path, float], ...] = ()
+    check: Path | None = None
+    cycles: tuple[int, ...] | None = None
+    zero_angle_deg: float = 0.0
+
+
+@dataclass(frozen=True)
+class CommissionedMisalignment:
+    """What was found.
+
+    Attributes
+    ----------
+    path, out : Path
+        The recording, and the joint file that was written.
+    fit : MisalignmentFit
+        The map, and what was fitted beside.
+    check : MapCheck or None
+        What it removes elsewhere.
+    checked_on : str or None
+        Where.
+    zero_angle_rad : float
+        Output angle from which the map counts.
+    gravity : str
+        "told", "turned", "none" or "unknown".
+    warnings : tuple of str
+        What a person should know.
+    """
+
+    path: Path
+    out: Path
+    fit: MisalignmentFit
+    check: MapCheck | None
+    checked_on: str | None
+    zero_angle_rad: float
+    gravity: str
+    warnings: tuple[str, ...]
+
+    def as_dict(self) -> dict[str, Any]:
+        """Plain values by name, for `--json`.
+
+        Returns
+        -------
+        dict
+            Nothing but texts, finite numbers, lists, dictionaries and None.
+        """
+        fit, check = self.fit, self.check
+        return {
+            "input": str(self.path),
+            "output": str(self.out),
+            "zero_of_output_angle_rad": self.zero_angle_rad,
+            "terms": [_plain(term) for term in fit.terms],
+            "once_a_turn": None if fit.once_a_turn is None else _plain(fit.once_a_turn),
+            "gravity": self.gravity,
+            "gravity_found": None if fit.gravity is None else _plain(fit.gravity),
+            "lowest_output_angle_rad": fit.lowest_output_angle_rad,
+            "highest_output_angle_rad": fit.highest_output_angle_rad,
+            "output_turns": fit.output_turns,
+            "condition_number": fit.condition,
+            "residual_rms_Nm": fit.residual_rms_Nm,
+            "effective_blocks": fit.effective_blocks,
+            "fitted_beside": {
+                name.removesuffix("#0"): {"value": float(value), "standard_uncertainty": float(u)}
+                for name, (value, u) in fit.others.items()
+            },
+            "check": None
+            if check is None
+            else {
+                "on": self.checked_on,
+                "share_removed": check.share_removed,
+                "terms": [asdict(term) for term in check.terms],
+            },
+            "warnings": list(self.warnings),
+        }
+
+
+def commission_misalignment(
+    path: Path,
+    out: Path,
+    options: Options,
+    task: FreeMotionTask,
+    *,
+    joint_path: Path | None = None,
+    command: str | None = None,
+) -> CommissionedMisalignment:
+    """Find the misalignment over the output's angle, and write it to a joint file.
+
+    Parameters
+    ----------
+    path : Path
+        The recording in free motion.
+    out : Path
+        The joint file; written whole or not at all.
+    options : Options
+        How recordings are read; what it leaves open the joint file says.
+    task : FreeMotionTask
+        What is to be found, and what is known.
+    joint_path : Path, optional
+        The joint file to start from.
+    command : str, optional
+        The command line, for the provenance.
+
+    Returns
+    -------
+    CommissionedMisalignment
+        What was found.
+
+    Raises
+    ------
+    InputError
+        If something that was given cannot be used, or nothing can be told; nothing is written then.
+    """
+    check_joint_output(out, path, joint_path)
+    joint_file = new_joint(path.stem or "joint") if joint_path is None else read_joint(joint_path)
+    joint = None if joint_path is None else joint_file.joint
+    gravity = _knowledge(task)
+    run, layout, remarks = _read_run(path, options, joint, 0.0)
+    runs = [run]
+    for turned, degrees in task.turned:
+        runs.append(_read_run(turned, options, joint, math.radians(degrees))[0])
+    zero_rad = math.radians(task.zero_angle_deg)
+    if "expected-torque" in layout.columns and gravity == "unknown":
+        gravity = Gravity(0.0)
+    fit = fit_misalignment(runs, gravity, cycles=task.cycles, zero_rad=zero_rad)
+    if not fit.terms:
+        raise InputError(_nothing_found(path, fit))
+    check, checked_on, why_not = _check(run, fit, gravity, task, options, joint, zero_rad)
+    section = build_section("misalignment", _section(fit, zero_rad), "what was found")
+    joint_file.set_section("misalignment", section, Provenance.of_file(path, command=command))
+    write_joint(joint_file, out)
+    return CommissionedMisalignment(
+        path,
+        out,
+        fit,
+        check,
+        checked_on,
+        zero_rad,
+        _gravity_word(gravity),
+        (*remarks, *_on_the_fit(fit, layout, joint), *why_not),
+    )
+
+
+def _knowledge(task: FreeMotionTask) -> GravityKnowledge:
+    if not task.turned:
+        return "unknown" if task.gravity is None else task.gravity
+    if task.gravity is not None:
+        raise InputError(
+            "--turned-run: gravity is told as well; expected one of both, so leave out --axis, "
+            "--gravity-torque and --payload-mass, or the runs with the housing turned"
+        )
+    return "turned"
+
+
+def _gravity_word(gravity: GravityKnowledge) -> str:
+    if isinstance(gravity, Gravity):
+        return "told" if gravity.amplitude_Nm else "none"
+    return gravity
+
+
+def _read_run(
+    path: Path, options: Options, joint: Joint | None, mounting_rad: float
+) -> tuple[FreeMotion, Layout, tuple[str, ...]]:
+    # What of the torque is inertia is found, not told.
+    layout = replace(build_layout(options, joint), load_inertia_kg_m2=None)
+    if "angle" not in layout.columns:
+        raise InputError(
+            f"{path}: only a speed is mapped; expected an angle, which says where the output is, so "
+            "map angle=COLUMN"
+        )
+    if layout.ratio is None:
+        raise InputError(
+            "--ratio: it is missing; the output's angle follows from the motor's by it, so add "
+            "--ratio N or a [gear] in the joint file"
+        )
+    recording = open_recording(path)
+    found = find_columns(layout.columns, recording.names, recording.column_count, recording.source)
+    survey = survey_recording(recording, layout, found)
+    check_survey(recording.source, layout, found, survey)
+    samples = read_excerpt(sample_rows(recording, layout, found, survey), MOST_ROWS)
+    wave = choose_wave_factor(joint_as_asked(joint, options), layout.ratio, samples)
+    delay_s = 0.0
+    if joint is not None and joint.signals is not None:
+        delay_s = joint.signals.angle_to_torque_delay_s or 0.0
+    run = free_motion(
+        samples.time_s,
+        _output_angle(samples, layout),
+        samples.torque_Nm,
+        expected_torque_Nm=samples.expected_torque_Nm,
+        ripple_angle_rad=float(wave.factor) * samples.motor_angle_rad,
+        delay_s=delay_s,
+        mounting_rad=mounting_rad,
+        source=str(path),
+    )
+    # Full scale does not matter here, so that nothing is to be said of it.
+    remarks = warnings_of(
+        replace(layout, rated_torque_source="option"), survey, survey.largest_torque_Nm or 1.0
+    )
+    if survey.rows > MOST_ROWS:
+        remarks = (*remarks, f"only the first {MOST_ROWS} of {survey.rows} rows are used")
+    return run, layout, remarks
+
+
+def _output_angle(samples: Samples, layout: Layout) -> np.ndarray:
+    assert layout.ratio is not None
+    sense = layout.output_direction if layout.angle_side == "motor" else 1
+    return np.asarray(sense * samples.motor_angle_rad / float(layout.ratio))
+
+
+def _check(
+    run: FreeMotion,
+    fit: MisalignmentFit,
+    gravity: GravityKnowledge,
+    task: FreeMotionTask,
+    options: Options,
+    joint: Joint | None,
+    zero_rad: float,
+) -> tuple[MapCheck | None, str | None, tuple[str, ...]]:
+    of_check: GravityKnowledge = gravity
+    terms: Sequence[MapTerm] = fit.terms
+    if gravity == "turned":
+        assert fit.gravity is not None
+        of_check = Gravity(
+            fit.gravity.amplitude_Nm, math.atan2(fit.gravity.sine_Nm, fit.gravity.cosine_Nm)
+        )
+    if task.check is not None:
+        other = _read_run(task.check, options, joint, 0.0)[0]
+        return check_map(other, terms, of_check, zero_rad=zero_rad), str(task.check), ()
+    turns = run.travel_rad[-1] / (2 * np.pi)
+    if turns < TURNS_FOR_CHECK:
+        return (
+            None,
+            None,
+            (
+                f"the map is checked on nothing: the output turned by {turns:.2g} turns, to and fro "
+                f"added up, and from {TURNS_FOR_CHECK:g} on the last part checks the first; give "
+                "another run with --check",
+            ),
+        )
+    cut = int(np.searchsorted(run.travel_rad, FIRST_PART * run.travel_rad[-1]))
+    cycles = [term.cycles_per_output_turn for term in terms]
+    try:
+        first = fit_misalignment(
+            [run.part(slice(None, cut))], of_check, cycles=cycles, zero_rad=zero_rad
+        )
+        check = check_map(run.part(slice(cut, None)), first.terms, of_check, zero_rad=zero_rad)
+    except InputError:
+        return (
+            None,
+            None,
+            (
+                "the map is checked on nothing: neither part of the run tells its terms apart by "
+                "itself; give another run with --check",
+            ),
+        )
+    return check, "the last part, by the map of the first", ()
+
+
+def _section(fit: MisalignmentFit, zero_rad: float) -> dict[str, Any]:
+    values: dict[str, Any] = {
+        "zero_of_output_angle_rad": zero_rad,
+        "terms": [
+            {
+                "cycles_per_output_turn": term.cycles_per_output_turn,
+                "cosine_Nm": term.cosine_Nm,
+                "sine_Nm": term.sine_Nm,
+                "standard_uncertainty_Nm": term.amplitude_standard_uncertainty_Nm,
+            }
+            for term in fit.terms
+        ],
+    }
+    if fit.lowest_output_angle_rad is not None:
+        values["lowest_output_angle_rad"] = fit.lowest_output_angle_rad
+        values["highest_output_angle_rad"] = fit.highest_output_angle_rad
+    return values
+
+
+def _on_the_fit(fit: MisalignmentFit, layout: Layout, joint: Joint | None) -> tuple[str, ...]:
+    says = list(fit.says)
+    once = fit.once_a_turn
+    if once is not None:
+        says.append(
+            f"one cycle per output turn ({once.amplitude_Nm:.3g} +- "
+            f"{once.amplitude_standard_uncertainty_Nm:.2g} Nm) is left out: it may be gravity as well "
+            "as misalignment; say --axis vertical, give --gravity-torque or --payload-mass with "
+            "--horizontal-angle-deg, or a second run with the housing turned"
+        )
+    if fit.lowest_output_angle_rad is not None:
+        assert fit.highest_output_angle_rad is not None
+        says.append(
+            f"the output turned from {math.degrees(fit.lowest_output_angle_rad):.4g} to "
+            f"{math.degrees(fit.highest_output_angle_rad):.4g} deg: the map holds there and nowhere "
+            "else, and the filter does not use it beyond"
+        )
+    inertia = fit.others.get("inertia_kg_m2")
+    if inertia is not None and inertia[0] < -_CLEAR * inertia[1]:
+        says.append(
+            f"the inertia comes out negative ({inertia[0]:.3g} kg m^2): torque and angle count in "
+            "opposite senses; gravity that was told has to count as the torque does"
+        )
+    weak = [
+        str(term.cycles_per_output_turn)
+        for term in fit.terms
+        if term.amplitude_Nm < 2 * term.amplitude_standard_uncertainty_Nm
+    ]
+    if weak:
+        says.append(
+            f"cycles {', '.join(weak)} per output turn are no larger than twice their uncertainty; "
+            "leave them out with --cycles"
+        )
+    if layout.angle_side == "motor":
+        says.append(
+            "the angle is the motor's: the map holds while its 0 stays at this angle of the output, "
+            "and the filter wants --absolute-angle for it"
+        )
+    if joint is None or joint.gear is None:
+        says.append(
+            "the joint file has no [gear], which the filter needs to remove the misalignment"
+        )
+    return tuple(says)
+
+
+def _plain(term: MapTerm) -> dict[str, Any]:
+    return {
+        **asdict(term),
+        "amplitude_Nm": term.amplitude_Nm,
+        "amplitude_standard_uncertainty_Nm": term.amplitude_standard_uncertainty_Nm,
+    }
+
+
+def _nothing_found(path: Path, fit: MisalignmentFit) -> str:
+    once = fit.once_a_turn
+    if once is None:
+        return (
+            f"{path}: no cycles per output turn stand out of what inertia, friction and gravity leave "
+            f"({fit.residual_rms_Nm:.3g} Nm rms); nothing was written: there is no misalignment to "
+            "remove, or name the cycles with --cycles"
+        )
+    return (
+        f"{path}: beside one cycle per output turn ({once.amplitude_Nm:.3g} Nm), which may be gravity "
+        "as well as misalignment, none stand out; expected gravity to be told, so say --axis vertical, "
+        "give --gravity-torque or --payload-mass with --horizontal-angle-deg, or a second run with the "
+        "housing turned; nothing was written"
+    )
