@@ -20,6 +20,7 @@ from strainwave.cli.fidelity import fidelity
 from strainwave.cli.filter import filter_command
 from strainwave.cli.identify import identify_command
 from strainwave.cli.joint import joint_app
+from strainwave.cli.tare import tare_command
 from strainwave.errors import InputError
 
 if TYPE_CHECKING:
@@ -45,6 +46,7 @@ app.command(calibrate_app)
 calibrate_app.command(fluctuation)
 calibrate_app.command(tune)
 app.command(design_app)
+app.command(tare_command, name="tare")
 app.command(joint_app)
 
 
