@@ -8,7 +8,10 @@ from typing import TYPE_CHECKING, Final
 
 import cyclopts
 
-from strainwave.cli import calibrate_misalignment  # noqa: F401 - registers its command
+from strainwave.cli import (  # noqa: F401 - each registers its command
+    calibrate_misalignment,
+    calibrate_thermal,
+)
 from strainwave.cli.calibrate import calibrate_app
 from strainwave.cli.calibrate_fluctuation import fluctuation
 from strainwave.cli.calibrate_tune import tune

@@ -17,13 +17,14 @@ from strainwave.calibrate.tare import (
     group_poses,
     tare,
 )
-from strainwave.configuration import calibration_of, converter_of
+from strainwave.configuration import calibration_of
 from strainwave.errors import InputError
 from strainwave.joint import Provenance, TorqueCalibration, read_joint, write_joint
 from strainwave.records.identified_log import measured_text
 from strainwave.records.joint_output import check_joint_output
 from strainwave.records.mapping import MapKeys
 from strainwave.records.table import read_table
+from strainwave.records.voltages import codes_to_volts
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -264,20 +265,7 @@ def tare_joint(
 
 
 def _read(path: Path, mapping: Iterable[str], joint: Joint) -> Table:
-    has_converter = joint.gauges is not None and joint.gauges.converter_bits is not None
-    codes = converter_of(joint) if has_converter else None
-
-    def to_volts(values: NDArray[np.float64]) -> NDArray[np.float64]:
-        assert codes is not None
-        whole = np.round(values)
-        if not np.array_equal(whole, values):
-            raise InputError(
-                f"{path}: the voltage is in counts, and some are no whole numbers; expected the "
-                "converter's codes, so correct them or convert the column to V"
-            )
-        return np.asarray(codes.to_volts(whole.astype(np.int32)))
-
-    table = read_table(path, mapping, KEYS, codes_to_volts=to_volts if codes else None)
+    table = read_table(path, mapping, KEYS, codes_to_volts=codes_to_volts(joint, path))
     if ("torque" in table) == ("voltage" in table):
         raise InputError(
             "--map: expected one of torque=COLUMN, as the joint reports it with the zero of the joint "
