@@ -50,6 +50,15 @@ def test_the_station_of_1999(angle_rad: float | None) -> None:
             assert found.model_share == pytest.approx(1 / wrong, rel=0.03)
 
 
+def test_single_readings_keep_the_fluctuation() -> None:
+    """Simulated: one motor angle a pose is not enough, and the gate says so."""
+    columns = station_poses(1, 0.15, readings=1)
+    columns["tau"] = GAIN_NM_PER_V * columns["u"]
+    found = tare(_poses(columns), RIGHT, SensorScatter(0.001 * RATED_NM, 0.02))
+    assert not found.is_explained
+    assert 0.003 < abs(found.zero_Nm - 0.15 * GAIN_NM_PER_V) / RATED_NM < 0.005
+
+
 @pytest.mark.parametrize("angle_rad", [HORIZONTAL_RAD, None])
 def test_gate_and_uncertainty_keep_their_promise(angle_rad: float | None) -> None:
     """Of 600 right models 1 % are refused, and errors over their uncertainties scatter by 1."""

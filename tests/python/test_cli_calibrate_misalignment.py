@@ -105,9 +105,18 @@ def test_filter_leaves_it_where_the_output_is_not_known(tmp_path: Path, call: Ca
         assert "misalignment of the joint file is not removed" in ended.err
         left = abs(phasors(columns["q"], read_result(out)["torque_Nm"], (1,))[0])
         assert left > 1.0
-    ended = call("filter", other, *OUTPUT, "--joint", joint, "--out", out, "--json")
-    assert ended.result["settings"]["misalignment_terms"] == 2
-    assert "not removed" not in ended.err
+    for method in ("ripple", "smoother"):
+        base = ("filter", other, *OUTPUT, "--joint", joint, "--out", out, "--method", method)
+        ended = call(*base, "--json")
+        assert ended.result["settings"]["misalignment_terms"] == 2
+        assert "not removed" not in ended.err
+        left = abs(phasors(columns["q"], read_result(out)["torque_Nm"], (1,))[0])
+        # Inertia and friction leave a phasor of their own.
+        own_Nm = columns["tau"].copy()
+        for n, phasor in PHASORS.items():
+            own_Nm -= np.real(phasor * np.exp(-1j * n * columns["q"]))
+        assert left == pytest.approx(abs(phasors(columns["q"], own_Nm, (1,))[0]), abs=0.05)
+    assert "misalignment of the joint file removed, 2 terms" in call(*base).out
 
 
 def test_a_map_of_a_part_of_a_turn_is_used_there_only(tmp_path: Path, call: Call) -> None:
