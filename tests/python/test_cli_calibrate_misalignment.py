@@ -11,7 +11,7 @@ import pytest
 
 from helpers.free_runs import GRAVITY_NM, made_up_run, phasors, station_columns, station_run
 from helpers.joint_sections import PROVENANCE, gear
-from helpers.log_files import command, read_result, write_csv, write_parquet
+from helpers.log_files import command, read_result, recording_path, write_csv, write_parquet
 from strainwave.joint import new_joint, read_joint, write_joint
 
 Call = Any
@@ -224,7 +224,32 @@ def test_recordings_that_are_refused(tmp_path: Path, call: Call) -> None:
         "calibrate", "misalignment", log, *OUTPUT[:2], "--angle-side", "motor", "--out", out
     )
     assert (ended.code, "--ratio: it is missing" in ended.err) == (2, True)
+    motor = (*OUTPUT[:2], "--angle-side", "motor", "--ratio", 100)
+    ended = call("calibrate", "misalignment", log, *motor, "--out", out)
+    assert (ended.code, "--joint: a [gear] is missing" in ended.err) == (2, True)
     out.write_text("taken")
     ended = call("calibrate", "misalignment", log, *OUTPUT, "--ratio", 100, "--out", out)
     assert (ended.code, "there is a file already" in ended.err) == (2, True)
     assert out.read_text() == "taken"
+
+
+def test_a_recording_that_is_no_free_motion(tmp_path: Path, call: Call) -> None:
+    """Recorded, Med7, base joint, all joints moving: the check says that the map does not repeat."""
+    log = recording_path("kuka-lbr-med7", "exciting-100hz.csv")
+    ended = call(
+        *("calibrate", "misalignment", log, "--map", "angle=q_0,torque=tau_0", "--rate", 100),
+        *("--angle-side", "output", "--ratio", 160, "--axis", "vertical"),
+        *("--out", tmp_path / "j.toml", "--json"),
+    )
+    assert ended.code == 0
+    result = ended.result
+    assert [term["cycles_per_output_turn"] for term in result["terms"]] == [2]
+    assert result["terms"][0]["amplitude_Nm"] == pytest.approx(0.62, abs=0.02)
+    assert result["check"]["share_removed"] == pytest.approx(0.40, abs=0.03)
+    assert "it does not repeat" in ended.err
+    shoulder = call(
+        *("calibrate", "misalignment", log, "--map", "angle=q_1,torque=tau_1", "--rate", 100),
+        *("--angle-side", "output", "--ratio", 160, "--axis", "vertical"),
+        *("--out", tmp_path / "k.toml"),
+    )
+    assert "gravity is there after all" in shoulder.err

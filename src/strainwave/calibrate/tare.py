@@ -233,11 +233,10 @@ def tare(poses: Poses, model: Weight | ArrayLike, scatter: SensorScatter) -> Tar
     if isinstance(model, Weight):
         angle_rad = model.horizontal_angle_rad or 0.0
         if fits_angle:
+            _require_apart(poses.output_angle_rad)
             angle_rad = _horizontal_angle(poses, model.amplitude_Nm)
-        torque = model.amplitude_Nm * np.cos(poses.output_angle_rad - angle_rad)
-        if fits_angle:
             turned = model.amplitude_Nm * np.sin(poses.output_angle_rad - angle_rad)
-            _require_apart(torque, turned)
+        torque = model.amplitude_Nm * np.cos(poses.output_angle_rad - angle_rad)
     else:
         torque = contiguous("model", model, np.float64)
         require_finite("model", torque, "pose")
@@ -334,26 +333,18 @@ def _best_share(
 
 
 def _horizontal_angle(poses: Poses, amplitude_Nm: float) -> float:
-    """Fit the angle of largest torque beside the zero, from starts all around."""
+    """Fit the angle of largest torque beside the zero."""
 
     def residuals(unknown: NDArray[np.float64]) -> NDArray[np.float64]:
         model = amplitude_Nm * np.cos(poses.output_angle_rad - unknown[0])
         return np.asarray(poses.torque_Nm - model - unknown[1])
 
-    starts = np.arange(8) * np.pi / 4
-    fits = [
-        least_squares(
-            residuals,
-            [
-                start,
-                float(
-                    np.mean(poses.torque_Nm - amplitude_Nm * np.cos(poses.output_angle_rad - start))
-                ),
-            ],
-        )
-        for start in starts
-    ]
-    best = min(fits, key=lambda fit: float(fit.cost))
+    # With the size free as well all is linear; its angle is next to that of the size that was told.
+    turned = poses.output_angle_rad
+    matrix = np.column_stack([np.cos(turned), np.sin(turned), np.ones(len(poses))])
+    cosine, sine, constant = np.linalg.lstsq(matrix, poses.torque_Nm, rcond=None)[0]
+    sign = np.sign(amplitude_Nm)
+    best = least_squares(residuals, [float(np.arctan2(sign * sine, sign * cosine)), constant])
     return float((best.x[0] + np.pi) % (2 * np.pi) - np.pi)
 
 
@@ -363,8 +354,9 @@ def _inflation(turned: NDArray[np.float64]) -> float:
     return float(np.sqrt(np.linalg.inv(matrix.T @ matrix)[0, 0] * len(turned)))
 
 
-def _require_apart(torque: NDArray[np.float64], turned: NDArray[np.float64]) -> None:
-    matrix = np.column_stack([np.ones(len(torque)), torque, turned])
+def _require_apart(angle_rad: NDArray[np.float64]) -> None:
+    middle = angle_rad - angle_rad.mean()
+    matrix = np.column_stack([np.ones(len(middle)), np.cos(middle), np.sin(middle)])
     length = np.linalg.norm(matrix, axis=0)
     condition = np.linalg.cond(matrix / np.where(length > 0, length, 1.0))
     if not condition <= LARGEST_CONDITION:

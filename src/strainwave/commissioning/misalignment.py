@@ -40,9 +40,11 @@ if TYPE_CHECKING:
 
 #: Rows of a recording that are read.
 MOST_ROWS: Final = 2_000_000
-#: A run of so many output turns, to and fro added up, checks itself: the map of its first part on the
-#: rest.
-TURNS_FOR_CHECK: Final = 4.0
+#: A run that passes its range so many times, to and fro added up, checks itself: the map of its first
+#: part on the rest.
+PASSES_FOR_CHECK: Final = 3.0
+#: Less than this share of the misalignment gone elsewhere is worth a sentence.
+SHARE_TO_REMOVE: Final = 0.9
 FIRST_PART: Final = 0.6
 #: Coefficients beyond so many standard uncertainties are taken to be there.
 _CLEAR: Final = 3.0
@@ -205,7 +207,7 @@ def commission_misalignment(
         checked_on,
         zero_rad,
         _gravity_word(gravity),
-        (*remarks, *_on_the_fit(fit, layout, joint), *why_not),
+        (*remarks, *_on_the_fit(fit, layout, joint), *_on_size(runs, fit, check), *why_not),
     )
 
 
@@ -240,6 +242,11 @@ def _read_run(
         raise InputError(
             "--ratio: it is missing; the output's angle follows from the motor's by it, so add "
             "--ratio N or a [gear] in the joint file"
+        )
+    if layout.angle_side == "motor" and (joint is None or joint.gear is None):
+        raise InputError(
+            "--joint: a [gear] is missing; the angle is the motor's, and the sense in which the output "
+            "turns with it is the gear's, so give a joint file with it, or map the output's angle"
         )
     recording = open_recording(path)
     found = find_columns(layout.columns, recording.names, recording.column_count, recording.source)
@@ -294,15 +301,16 @@ def _check(
     if task.check is not None:
         other = _read_run(task.check, options, joint, 0.0)[0]
         return check_map(other, terms, of_check, zero_rad=zero_rad), str(task.check), ()
-    turns = run.travel_rad[-1] / (2 * np.pi)
-    if turns < TURNS_FOR_CHECK:
+    whole_rad = min(float(np.ptp(run.output_angle_rad)), 2 * np.pi)
+    passes = float(run.travel_rad[-1]) / whole_rad
+    if passes < PASSES_FOR_CHECK:
         return (
             None,
             None,
             (
-                f"the map is checked on nothing: the output turned by {turns:.2g} turns, to and fro "
-                f"added up, and from {TURNS_FOR_CHECK:g} on the last part checks the first; give "
-                "another run with --check",
+                f"the map is checked on nothing: the output passed its range {passes:.2g} times, to "
+                f"and fro added up, and from {PASSES_FOR_CHECK:g} on the last part checks the first; "
+                "give another run with --check",
             ),
         )
     cut = int(np.searchsorted(run.travel_rad, FIRST_PART * run.travel_rad[-1]))
@@ -384,6 +392,26 @@ def _on_the_fit(fit: MisalignmentFit, layout: Layout, joint: Joint | None) -> tu
     if joint is None or joint.gear is None:
         says.append(
             "the joint file has no [gear], which the filter needs to remove the misalignment"
+        )
+    return tuple(says)
+
+
+def _on_size(
+    runs: Sequence[FreeMotion], fit: MisalignmentFit, check: MapCheck | None
+) -> tuple[str, ...]:
+    span_Nm = max(float(np.ptp(np.quantile(run.torque_Nm, (0.01, 0.99)))) for run in runs)
+    says = [
+        f"cycle {term.cycles_per_output_turn} per output turn comes out larger "
+        f"({2 * term.amplitude_Nm:.3g} Nm peak to peak) than all that the torque varies by "
+        f"({span_Nm:.3g} Nm): terms cancel each other, or gravity is there after all; turn "
+        "further, or name fewer cycles"
+        for term in fit.terms
+        if 2 * term.amplitude_Nm > span_Nm
+    ]
+    if check is not None and check.share_removed < SHARE_TO_REMOVE:
+        says.append(
+            f"the map removes {check.share_removed:.0%} of the misalignment where it was checked, and "
+            f"{SHARE_TO_REMOVE:.0%} is expected: it does not repeat, or the run is too short or not free"
         )
     return tuple(says)
 
