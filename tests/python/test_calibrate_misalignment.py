@@ -18,11 +18,8 @@ from helpers.free_runs import (
     station_run,
 )
 from strainwave.calibrate.free_motion import FreeMotion, free_motion
-from strainwave.calibrate.misalignment import (
-    Gravity,
-    check_map,
-    fit_misalignment,
-)
+from strainwave.calibrate.misalignment import check_map, fit_misalignment
+from strainwave.calibrate.misalignment_design import Gravity
 from strainwave.errors import InputError
 
 PHASORS = {1: 2.0 - 1.0j, 2: 0.3 + 0.4j, 8: -0.15 + 0.1j}

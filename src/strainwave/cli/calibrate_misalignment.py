@@ -10,8 +10,8 @@ import cyclopts
 from strainwave.cli.calibrate import calibrate_app
 
 if TYPE_CHECKING:
-    from strainwave.calibrate.misalignment import Gravity
-    from strainwave.commissioning.misalignment import CommissionedMisalignment
+    from strainwave.calibrate.misalignment_design import Gravity
+    from strainwave.commissioning.misalignment_result import CommissionedMisalignment
 
 
 @calibrate_app.command(name="misalignment")
@@ -148,7 +148,7 @@ def _gravity(payload: object, axis: str | None, torque_Nm: float | None) -> Grav
     """Take what was said of gravity, once; None where nothing was."""
     from math import isfinite, radians
 
-    from strainwave.calibrate.misalignment import Gravity
+    from strainwave.calibrate.misalignment_design import Gravity
     from strainwave.commissioning.gravity import Payload
     from strainwave.errors import InputError
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import cyclopts
 
 if TYPE_CHECKING:
-    from strainwave.commissioning.tare import TaredJoint
+    from strainwave.commissioning.tare_result import TaredJoint
 
 
 def tare_command(

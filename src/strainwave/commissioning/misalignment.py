@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
@@ -11,13 +11,16 @@ import numpy as np
 
 from strainwave.calibrate.free_motion import FreeMotion, free_motion
 from strainwave.calibrate.misalignment import (
-    Gravity,
-    GravityKnowledge,
     MapCheck,
-    MapTerm,
     MisalignmentFit,
     check_map,
     fit_misalignment,
+)
+from strainwave.calibrate.misalignment_design import Gravity, GravityKnowledge, MapTerm
+from strainwave.commissioning.misalignment_result import (
+    CommissionedMisalignment,
+    nothing_found,
+    remarks_on,
 )
 from strainwave.errors import InputError
 from strainwave.joint import Provenance, build_section, new_joint, read_joint, write_joint
@@ -43,11 +46,7 @@ MOST_ROWS: Final = 2_000_000
 #: A run that passes its range so many times, to and fro added up, checks itself: the map of its first
 #: part on the rest.
 PASSES_FOR_CHECK: Final = 3.0
-#: Less than this share of the misalignment gone elsewhere is worth a sentence.
-SHARE_TO_REMOVE: Final = 0.9
 FIRST_PART: Final = 0.6
-#: Coefficients beyond so many standard uncertainties are taken to be there.
-_CLEAR: Final = 3.0
 
 
 @dataclass(frozen=True)
@@ -74,75 +73,6 @@ class FreeMotionTask:
     check: Path | None = None
     cycles: tuple[int, ...] | None = None
     zero_angle_deg: float = 0.0
-
-
-@dataclass(frozen=True)
-class CommissionedMisalignment:
-    """What was found.
-
-    Attributes
-    ----------
-    path, out : Path
-        The recording, and the joint file that was written.
-    fit : MisalignmentFit
-        The map, and what was fitted beside.
-    check : MapCheck or None
-        What it removes elsewhere.
-    checked_on : str or None
-        Where.
-    zero_angle_rad : float
-        Output angle from which the map counts.
-    gravity : str
-        "told", "turned", "none" or "unknown".
-    warnings : tuple of str
-        What a person should know.
-    """
-
-    path: Path
-    out: Path
-    fit: MisalignmentFit
-    check: MapCheck | None
-    checked_on: str | None
-    zero_angle_rad: float
-    gravity: str
-    warnings: tuple[str, ...]
-
-    def as_dict(self) -> dict[str, Any]:
-        """Plain values by name, for `--json`.
-
-        Returns
-        -------
-        dict
-            Nothing but texts, finite numbers, lists, dictionaries and None.
-        """
-        fit, check = self.fit, self.check
-        return {
-            "input": str(self.path),
-            "output": str(self.out),
-            "zero_of_output_angle_rad": self.zero_angle_rad,
-            "terms": [_plain(term) for term in fit.terms],
-            "once_a_turn": None if fit.once_a_turn is None else _plain(fit.once_a_turn),
-            "gravity": self.gravity,
-            "gravity_found": None if fit.gravity is None else _plain(fit.gravity),
-            "lowest_output_angle_rad": fit.lowest_output_angle_rad,
-            "highest_output_angle_rad": fit.highest_output_angle_rad,
-            "output_turns": fit.output_turns,
-            "condition_number": fit.condition,
-            "residual_rms_Nm": fit.residual_rms_Nm,
-            "effective_blocks": fit.effective_blocks,
-            "fitted_beside": {
-                name.removesuffix("#0"): {"value": float(value), "standard_uncertainty": float(u)}
-                for name, (value, u) in fit.others.items()
-            },
-            "check": None
-            if check is None
-            else {
-                "on": self.checked_on,
-                "share_removed": check.share_removed,
-                "terms": [asdict(term) for term in check.terms],
-            },
-            "warnings": list(self.warnings),
-        }
 
 
 def commission_misalignment(
@@ -194,7 +124,7 @@ def commission_misalignment(
         gravity = Gravity(0.0)
     fit = fit_misalignment(runs, gravity, cycles=task.cycles, zero_rad=zero_rad)
     if not fit.terms:
-        raise InputError(_nothing_found(path, fit))
+        raise InputError(nothing_found(path, fit))
     check, checked_on, why_not = _check(run, fit, gravity, task, options, joint, zero_rad)
     section = build_section("misalignment", _section(fit, zero_rad), "what was found")
     joint_file.set_section("misalignment", section, Provenance.of_file(path, command=command))
@@ -207,7 +137,7 @@ def commission_misalignment(
         checked_on,
         zero_rad,
         _gravity_word(gravity),
-        (*remarks, *_on_the_fit(fit, layout, joint), *_on_size(runs, fit, check), *why_not),
+        (*remarks, *remarks_on(runs, fit, check, layout, joint), *why_not),
     )
 
 
@@ -349,92 +279,3 @@ def _section(fit: MisalignmentFit, zero_rad: float) -> dict[str, Any]:
         values["lowest_output_angle_rad"] = fit.lowest_output_angle_rad
         values["highest_output_angle_rad"] = fit.highest_output_angle_rad
     return values
-
-
-def _on_the_fit(fit: MisalignmentFit, layout: Layout, joint: Joint | None) -> tuple[str, ...]:
-    says = list(fit.says)
-    once = fit.once_a_turn
-    if once is not None:
-        says.append(
-            f"one cycle per output turn ({once.amplitude_Nm:.3g} +- "
-            f"{once.amplitude_standard_uncertainty_Nm:.2g} Nm) is left out: it may be gravity as well "
-            "as misalignment; say --axis vertical, give --gravity-torque or --payload-mass with "
-            "--horizontal-angle-deg, or a second run with the housing turned"
-        )
-    if fit.lowest_output_angle_rad is not None:
-        assert fit.highest_output_angle_rad is not None
-        says.append(
-            f"the output turned from {math.degrees(fit.lowest_output_angle_rad):.4g} to "
-            f"{math.degrees(fit.highest_output_angle_rad):.4g} deg: the map holds there and nowhere "
-            "else, and the filter does not use it beyond"
-        )
-    inertia = fit.others.get("inertia_kg_m2")
-    if inertia is not None and inertia[0] < -_CLEAR * inertia[1]:
-        says.append(
-            f"the inertia comes out negative ({inertia[0]:.3g} kg m^2): torque and angle count in "
-            "opposite senses; gravity that was told has to count as the torque does"
-        )
-    weak = [
-        str(term.cycles_per_output_turn)
-        for term in fit.terms
-        if term.amplitude_Nm < 2 * term.amplitude_standard_uncertainty_Nm
-    ]
-    if weak:
-        says.append(
-            f"cycles {', '.join(weak)} per output turn are no larger than twice their uncertainty; "
-            "leave them out with --cycles"
-        )
-    if layout.angle_side == "motor":
-        says.append(
-            "the angle is the motor's: the map holds while its 0 stays at this angle of the output, "
-            "and the filter wants --absolute-angle for it"
-        )
-    if joint is None or joint.gear is None:
-        says.append(
-            "the joint file has no [gear], which the filter needs to remove the misalignment"
-        )
-    return tuple(says)
-
-
-def _on_size(
-    runs: Sequence[FreeMotion], fit: MisalignmentFit, check: MapCheck | None
-) -> tuple[str, ...]:
-    span_Nm = max(float(np.ptp(np.quantile(run.torque_Nm, (0.01, 0.99)))) for run in runs)
-    says = [
-        f"cycle {term.cycles_per_output_turn} per output turn comes out larger "
-        f"({2 * term.amplitude_Nm:.3g} Nm peak to peak) than all that the torque varies by "
-        f"({span_Nm:.3g} Nm): terms cancel each other, or gravity is there after all; turn "
-        "further, or name fewer cycles"
-        for term in fit.terms
-        if 2 * term.amplitude_Nm > span_Nm
-    ]
-    if check is not None and check.share_removed < SHARE_TO_REMOVE:
-        says.append(
-            f"the map removes {check.share_removed:.0%} of the misalignment where it was checked, and "
-            f"{SHARE_TO_REMOVE:.0%} is expected: it does not repeat, or the run is too short or not free"
-        )
-    return tuple(says)
-
-
-def _plain(term: MapTerm) -> dict[str, Any]:
-    return {
-        **asdict(term),
-        "amplitude_Nm": term.amplitude_Nm,
-        "amplitude_standard_uncertainty_Nm": term.amplitude_standard_uncertainty_Nm,
-    }
-
-
-def _nothing_found(path: Path, fit: MisalignmentFit) -> str:
-    once = fit.once_a_turn
-    if once is None:
-        return (
-            f"{path}: no cycles per output turn stand out of what inertia, friction and gravity leave "
-            f"({fit.residual_rms_Nm:.3g} Nm rms); nothing was written: there is no misalignment to "
-            "remove, or name the cycles with --cycles"
-        )
-    return (
-        f"{path}: beside one cycle per output turn ({once.amplitude_Nm:.3g} Nm), which may be gravity "
-        "as well as misalignment, none stand out; expected gravity to be told, so say --axis vertical, "
-        "give --gravity-torque or --payload-mass with --horizontal-angle-deg, or a second run with the "
-        "housing turned; nothing was written"
-    )
