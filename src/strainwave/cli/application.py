@@ -8,15 +8,13 @@ from typing import TYPE_CHECKING, Final
 
 import cyclopts
 
-from strainwave.cli import (  # noqa: F401 - each registers its command
-    calibrate_misalignment,
-    calibrate_thermal,
-)
 from strainwave.cli.calibrate import calibrate_app
 from strainwave.cli.calibrate_fluctuation import fluctuation
-from strainwave.cli.calibrate_tune import tune
+from strainwave.cli.calibrate_misalignment import calibrate_misalignment
 from strainwave.cli.calibrate_plan import calibrate_plan
+from strainwave.cli.calibrate_thermal import calibrate_thermal
 from strainwave.cli.calibrate_torque import calibrate_torque_command
+from strainwave.cli.calibrate_tune import tune
 from strainwave.cli.demo import demo
 from strainwave.cli.design import design_app
 from strainwave.cli.fidelity import fidelity
@@ -45,9 +43,11 @@ app.command(fidelity)
 app.command(identify_command, name="identify")
 calibrate_app.command(calibrate_torque_command, name="torque")
 calibrate_app.command(calibrate_plan, name="plan")
-app.command(calibrate_app)
+calibrate_app.command(calibrate_misalignment, name="misalignment")
+calibrate_app.command(calibrate_thermal, name="thermal")
 calibrate_app.command(fluctuation)
 calibrate_app.command(tune)
+app.command(calibrate_app)
 app.command(design_app)
 app.command(tare_command, name="tare")
 app.command(joint_app)

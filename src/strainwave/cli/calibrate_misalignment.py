@@ -7,14 +7,11 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 import cyclopts
 
-from strainwave.cli.calibrate import calibrate_app
-
 if TYPE_CHECKING:
     from strainwave.calibrate.misalignment_design import Gravity
     from strainwave.commissioning.misalignment_result import CommissionedMisalignment
 
 
-@calibrate_app.command(name="misalignment")
 def calibrate_misalignment(
     log: Path,
     /,

@@ -7,13 +7,10 @@ from typing import TYPE_CHECKING, Annotated
 
 import cyclopts
 
-from strainwave.cli.calibrate import calibrate_app
-
 if TYPE_CHECKING:
     from strainwave.commissioning.thermal import ThermalJoint
 
 
-@calibrate_app.command(name="thermal")
 def calibrate_thermal(
     readings: Path,
     /,

@@ -33,8 +33,8 @@ from strainwave.commissioning.told import GearConfiguration, parse_sensitivities
 from strainwave.commissioning.wave_angle import Timing, found_timing
 from strainwave.errors import InputError
 from strainwave.joint import Provenance, new_joint, read_joint, write_joint
-from strainwave.records.mapping import MapKeys
 from strainwave.records.joint_output import check_joint_output
+from strainwave.records.mapping import MapKeys
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -168,7 +168,7 @@ def tare_joint(
 
 
 def _read(path: Path, mapping: Iterable[str], joint: Joint) -> Table:
-    table = read_table(path, mapping, KEYS, codes_to_volts=codes_to_volts(joint, path))
+    table = read_table(path, mapping, KEYS, codes_to_volts=codes_to_volts(joint))
     if ("torque" in table) == ("voltage" in table):
         raise InputError(
             "--map: expected one of torque=COLUMN, as the joint reports it with the zero of the joint "

@@ -128,7 +128,7 @@ def calibrate_temperature(
         mapping,
         KEYS,
         required=("temperature", "voltage"),
-        codes_to_volts=codes_to_volts(joint, path),
+        codes_to_volts=codes_to_volts(joint),
     )
     table.require_complete(KEYS.quantities)
     temperature = table.values["temperature"]

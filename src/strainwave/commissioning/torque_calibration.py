@@ -13,16 +13,15 @@ from strainwave.commissioning.torque_fit import FitOptions, fit_torque
 from strainwave.commissioning.torque_result import TorqueCalibrated, TorqueFit
 from strainwave.commissioning.torque_table import read_load_table
 from strainwave.commissioning.torque_warnings import warnings_of
-from strainwave.configuration import converter_of
 from strainwave.errors import InputError
 from strainwave.joint import Provenance, build_section, new_joint, read_joint, write_joint
 from strainwave.records.joint_output import check_joint_output
+from strainwave.records.voltages import codes_to_volts
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from strainwave.joint import Joint, JointFile
-    from strainwave.records.table import CodesToVolts
 
 _SOURCE = "the torque calibration"
 _LEAST_RATED_NM, _LARGEST_RATED_NM = 1e-6, 1e7
@@ -125,7 +124,7 @@ def calibrate_torque(
         else options.load_uncertainty_percent / 100.0,
         resolution_V=options.resolution_V,
     )
-    table = read_load_table(path, options.mapping, _codes_to_volts(joint))
+    table = read_load_table(path, options.mapping, codes_to_volts(joint))
     try:
         fit = fit_torque(table.loadings, fit_options)
     except InputError as error:
@@ -181,16 +180,6 @@ def _rated_torque_Nm(options: TorqueOptions, joint: Joint, joint_path: Path | No
             "option out or correct the file"
         )
     return joint.gear.rated_torque_Nm
-
-
-def _codes_to_volts(joint: Joint) -> CodesToVolts | None:
-    if joint.gauges is None or joint.gauges.converter_bits is None:
-        return None
-    converter = converter_of(joint)
-    lowest = converter.lowest_code
-    lowest_V = float(np.asarray(converter.to_volts([lowest]))[0])
-    # Not to_volts: readings may be means of codes.
-    return lambda codes: lowest_V + (codes - lowest) * converter.step_V
 
 
 def _fill(
