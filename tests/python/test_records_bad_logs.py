@@ -189,7 +189,7 @@ BAD_OPTIONS = {
     "unknown key": (
         ("--map", "tim=t_s,angle=q_rad,torque=tau_Nm", *SIDE),
         "'tim' is no signal; expected one of time, angle, motor-angle, speed, torque, "
-        "expected-torque; did you mean time?",
+        "expected-torque, temperature, gauges; did you mean time?",
     ),
     "twice": ((*GOOD_MAP, "--map", "time=t_s", *SIDE), "time is mapped twice"),
     "no pair": (("--map", "t_s", *SIDE), "'t_s' is no pair; expected key=column pairs"),

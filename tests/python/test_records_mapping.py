@@ -8,13 +8,21 @@ from hypothesis import strategies as st
 
 from strainwave.errors import InputError
 from strainwave.records.columns import FoundColumn, find_columns
-from strainwave.records.mapping import QUANTITIES, MappedColumn, format_mapping, parse_mapping
+from strainwave.records.mapping import (
+    QUANTITIES,
+    MappedColumn,
+    format_mapping,
+    gauge_key,
+    parse_mapping,
+)
 
 UNITS = {
     "time": ["s", "ms", "us", "ns"],
     "angle": ["rad", "deg", "turn", "counts/16777216"],
     "speed": ["rad/s", "turn/min", "counts/4096/s"],
     "torque": ["Nm", "mNm"],
+    "temperature": ["degC", "K", "degF"],
+    "voltage": ["V", "mV", "counts"],
 }
 
 
@@ -37,6 +45,15 @@ def test_whatever_a_column_is_called_it_can_be_mapped(mapping: dict[str, MappedC
     found = parse_mapping([format_mapping(mapping)])
     assert found == mapping
     assert all(column.quoted for column in found.values())
+
+
+@given(st.lists(st.text(max_size=12), min_size=1, max_size=5), st.sampled_from(UNITS["voltage"]))
+def test_gauges_are_mapped_together_in_their_order(names: list[str], unit: str) -> None:
+    mapping = {
+        gauge_key(number): MappedColumn(name, unit, -1 if number % 2 else 1, quoted=True)
+        for number, name in enumerate(names, 1)
+    }
+    assert parse_mapping([format_mapping(mapping)]) == mapping
 
 
 @given(st.text(alphabet='abt=:,"- +', max_size=20))

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from strainwave.joint.units import conversion
-from strainwave.records.mapping import QUANTITIES
+from strainwave.records.mapping import gauge_key, is_gauge_key, quantity_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -43,6 +43,9 @@ class Columns:
         Torque, shape (rows,), Nm.
     expected_torque_Nm : numpy.ndarray or None
         Expected torque, shape (rows,), Nm.
+    gauges_V : numpy.ndarray or None
+        Voltage of every gauge, shape (rows, gauges), V; where it is there, the torque is made of
+        it.
     """
 
     first_row: int
@@ -52,6 +55,7 @@ class Columns:
     speed_rad_s: NDArray[np.float64] | None
     torque_Nm: NDArray[np.float64]
     expected_torque_Nm: NDArray[np.float64] | None
+    gauges_V: NDArray[np.float64] | None = None
 
     def __len__(self) -> int:
         return len(self.torque_Nm)
@@ -96,21 +100,39 @@ class Converter:
             log_time_s = time_s = rows / self._layout.rate_Hz
         self._rows += chunk.rows
         signals = {key: self._signal(key, values) for key, values in chunk.values.items()}
+        gauges_V = self._gauges(signals)
         return Columns(
             first_row,
             log_time_s,
             time_s,
             signals.get("angle"),
             signals.get("speed"),
-            signals["torque"],
+            signals["torque"] if gauges_V is None else self._torque(gauges_V, signals),
             signals.get("expected-torque"),
+            gauges_V,
         )
 
+    def _gauges(self, signals: Mapping[str, NDArray[np.float64]]) -> NDArray[np.float64] | None:
+        count = sum(is_gauge_key(key) for key in signals)
+        if self._layout.chain is None or count == 0:
+            return None
+        return np.column_stack([signals[gauge_key(number)] for number in range(1, count + 1)])
+
+    def _torque(
+        self, gauges_V: NDArray[np.float64], signals: Mapping[str, NDArray[np.float64]]
+    ) -> NDArray[np.float64]:
+        assert self._layout.chain is not None
+        return self._layout.chain.torque_Nm(gauges_V, signals.get("temperature"))
+
     def _signal(self, key: str, values: NDArray[np.float64]) -> NDArray[np.float64]:
-        unit = conversion(QUANTITIES[key], self._layout.columns[key].unit)
-        # Converter codes are a unit of voltages, which are not mapped here.
-        assert unit is not None
-        converted = values * (self._found[key].sign * unit.factor)
+        unit = conversion(quantity_of(key), self._layout.columns[key].unit)
+        sign = self._found[key].sign
+        if unit is None:
+            # Converter codes, which only gauges have.
+            assert self._layout.chain is not None
+            converted = sign * self._layout.chain.volts(values)
+        else:
+            converted = values * (sign * unit.factor) + unit.offset
         # What the core would reject is not there: nothing that follows has to think of overflow.
         return np.where(np.abs(converted) <= LARGEST_USABLE, converted, np.nan)
 

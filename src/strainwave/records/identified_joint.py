@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 from strainwave.identify.torque_or_artefact import UNDECIDABLE
 from strainwave.joint import build_section
 from strainwave.joint.ripple_filter import RippleFilter
+from strainwave.records.mapping import is_gauge_key
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -106,19 +107,20 @@ def columns_of(
         "speed": f"{layout.angle_side}_speed",
         "torque": "torque",
         "expected-torque": "expected_torque",
+        "temperature": "temperature",
     }
-    columns = {}
+    columns: dict[str, Any] = {}
     for key, column in found.items():
         # A name that is not unique, or no text for a file, gives way to the column's number.
         name: str | int = column.index + 1
         if names is not None and list(names).count(names[column.index]) == 1:
             text = names[column.index]
             name = text if text.isprintable() and 0 < len(text) <= 500 else name
-        columns[keys[key]] = {
-            "column": name,
-            "unit": layout.columns[key].unit,
-            "sign": column.sign,
-        }
+        described = {"column": name, "unit": layout.columns[key].unit, "sign": column.sign}
+        if is_gauge_key(key):
+            columns.setdefault("gauges", []).append(described)
+        else:
+            columns[keys[key]] = described
     return columns
 
 

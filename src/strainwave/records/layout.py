@@ -7,8 +7,9 @@ from fractions import Fraction
 from typing import TYPE_CHECKING, Literal, TypeVar
 
 from strainwave.errors import InputError
-from strainwave.records.mapping import MappedColumn
+from strainwave.records.mapping import MappedColumn, gauge_key, is_gauge_key
 from strainwave.records.options import AngleSide, Options, check_options
+from strainwave.records.sensor_chain import SensorChain, build_chain
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -45,6 +46,8 @@ class Layout:
         Sense of the output's rotation for positive motor rotation, 1 or -1.
     remarks : tuple of str
         What a person should know of how this came about.
+    chain : SensorChain or None
+        From the mapped gauges to torque; None where the torque itself is mapped.
     """
 
     columns: dict[str, MappedColumn]
@@ -56,6 +59,7 @@ class Layout:
     load_inertia_kg_m2: float | None = None
     output_direction: int = 1
     remarks: tuple[str, ...] = ()
+    chain: SensorChain | None = None
 
     @property
     def motor_turns_per_turn(self) -> float:
@@ -93,6 +97,7 @@ def build_layout(options: Options, joint: Joint | None = None) -> Layout:
 class _Merge:
     def __init__(self, options: Options, joint: Joint | None) -> None:
         self.options = options
+        self.joint = joint
         self.signals: Signals | None = None if joint is None else joint.signals
         self.gear = None if joint is None else joint.gear
         self.remarks: list[str] = []
@@ -101,6 +106,8 @@ class _Merge:
         ratio = self.chosen("--ratio", self.options.ratio, self._joint_ratio())
         side = "motor" if "motor-angle" in self.options.mapping else self.side()
         columns = self.columns(side)
+        has_gauges = any(is_gauge_key(key) for key in columns)
+        chain = build_chain(self.joint, columns) if has_gauges else None
         if side == "output" and ratio is None:
             raise InputError(
                 "--ratio: it is missing; an angle of the output needs the motor turns per output "
@@ -134,6 +141,7 @@ class _Merge:
             self.inertia(columns, side, ratio),
             1 if self.gear is None else self.gear.output_direction,
             tuple(self.remarks),
+            chain,
         )
 
     def chosen(self, name: str, option: Value | None, in_joint: Value | None) -> Value | None:
@@ -183,6 +191,9 @@ class _Merge:
             self.remarks.append("the mapped speed is used instead of the angle in the joint file")
             del in_joint["angle"]
         given = self.motor_angle_first(given, side)
+        if any(is_gauge_key(key) for key in given):
+            # Other columns than the joint file's, and perhaps another number of them.
+            in_joint = {key: each for key, each in in_joint.items() if not is_gauge_key(key)}
         merged = {**in_joint}
         for key, column in given.items():
             chosen = self.chosen(f"--map {key}", column, in_joint.get(key))
@@ -197,12 +208,30 @@ class _Merge:
                 "--map: nothing is mapped for the angle; expected angle=COLUMN, or speed=COLUMN "
                 f"where there is no angle, measured on the {side} side"
             )
+        return self.one_torque(merged)
+
+    def one_torque(self, merged: dict[str, MappedColumn]) -> dict[str, MappedColumn]:
+        """Keep either the torque or the gauges that it is made of."""
+        gauges = [key for key in merged if is_gauge_key(key)]
+        given = self.options.mapping
+        if "torque" in given and any(is_gauge_key(key) for key in given):
+            raise InputError(
+                "--map: torque and gauges are both mapped; expected the recorded torque, or the "
+                "gauges that it is computed from, so remove one of them"
+            )
+        # The temperature is that of the gauges' drift; a torque has none left.
+        beside = {*gauges, "temperature"}
+        if "torque" in given:
+            return {key: each for key, each in merged.items() if key not in beside}
+        can_compute = self.joint is not None and self.joint.torque_calibration is not None
+        if gauges and (can_compute or "torque" not in merged):
+            return {key: each for key, each in merged.items() if key != "torque"}
         if "torque" not in merged:
             raise InputError(
                 "--map: nothing is mapped for the torque; expected torque=COLUMN, the torque with "
-                "ripple"
+                "ripple, or gauges=COLUMN+COLUMN+... with a joint file that has a calibration"
             )
-        return merged
+        return {key: each for key, each in merged.items() if key not in beside}
 
     def motor_angle_first(
         self, given: Mapping[str, MappedColumn], side: AngleSide
@@ -246,7 +275,9 @@ def _joint_columns(signals: Signals, side: AngleSide) -> dict[str, MappedColumn]
         "speed": signals.motor_speed if motor else signals.output_speed,
         "torque": signals.torque,
         "expected-torque": signals.expected_torque,
+        "temperature": signals.temperature,
     }
+    found |= {gauge_key(number): column for number, column in enumerate(signals.gauges, 1)}
     return {
         key: MappedColumn(column.column, column.unit, column.sign, quoted=True)
         for key, column in found.items()

@@ -20,6 +20,7 @@ QUANTITIES: Final[dict[str, Quantity]] = {
     "speed": "speed",
     "torque": "torque",
     "expected-torque": "torque",
+    "temperature": "temperature",
 }
 """What can be mapped, and the quantity that decides on the units."""
 
@@ -71,8 +72,58 @@ class MapKeys:
     example: str = _EXAMPLE
 
 
-LOG_KEYS: Final = MapKeys(QUANTITIES)
+GAUGES: Final = "gauges"
+LOG_KEYS: Final = MapKeys({**QUANTITIES, GAUGES: "voltage"}, lists=frozenset({GAUGES}))
 """The keys of a recording."""
+_GAUGE = re.compile(r"gauge [1-9][0-9]*")
+
+
+def gauge_key(number: int) -> str:
+    """Name the column of one of the gauges, which are mapped together.
+
+    Parameters
+    ----------
+    number : int
+        Its number, from 1.
+
+    Returns
+    -------
+    str
+        The key.
+    """
+    return f"gauge {number}"
+
+
+def is_gauge_key(key: str) -> bool:
+    """Tell whether a key is that of a gauge.
+
+    Parameters
+    ----------
+    key : str
+        A key.
+
+    Returns
+    -------
+    bool
+        True for what `gauge_key` makes.
+    """
+    return _GAUGE.fullmatch(key) is not None
+
+
+def quantity_of(key: str) -> Quantity:
+    """Return what a column of a recording measures.
+
+    Parameters
+    ----------
+    key : str
+        One of `QUANTITIES`, or from `gauge_key`.
+
+    Returns
+    -------
+    str
+        The quantity.
+    """
+    return "voltage" if is_gauge_key(key) else QUANTITIES[key]
 
 
 def parse_mapping(texts: Iterable[str]) -> dict[str, MappedColumn]:
@@ -86,14 +137,20 @@ def parse_mapping(texts: Iterable[str]) -> dict[str, MappedColumn]:
     Returns
     -------
     dict
-        Columns by key; the keys are those of `QUANTITIES`.
+        Columns by key: those of `QUANTITIES`, and one from `gauge_key` for each gauge.
 
     Raises
     ------
     InputError
         If a pair cannot be read, or a key is unknown or given twice.
     """
-    return {key: columns[0] for key, columns in parse_columns(texts, LOG_KEYS).items()}
+    mapping: dict[str, MappedColumn] = {}
+    for key, columns in parse_columns(texts, LOG_KEYS).items():
+        if key == GAUGES:
+            mapping |= {gauge_key(number): each for number, each in enumerate(columns, 1)}
+        else:
+            mapping[key] = columns[0]
+    return mapping
 
 
 def parse_columns(texts: Iterable[str], keys: MapKeys) -> dict[str, tuple[MappedColumn, ...]]:
@@ -142,15 +199,24 @@ def format_mapping(mapping: Mapping[str, MappedColumn]) -> str:
     str
         ``key=column:unit`` pairs by commas.
     """
-    return ",".join(f"{key}={_format_column(column)}" for key, column in mapping.items())
+    pairs = [
+        f"{key}={_format_name(column)}:{column.unit}"
+        for key, column in mapping.items()
+        if not is_gauge_key(key)
+    ]
+    gauges = [column for key, column in mapping.items() if is_gauge_key(key)]
+    if gauges:
+        names = "+".join(_format_name(column) for column in gauges)
+        pairs.append(f"{GAUGES}={names}:{gauges[0].unit}")
+    return ",".join(pairs)
 
 
-def _format_column(column: MappedColumn) -> str:
+def _format_name(column: MappedColumn) -> str:
     name = str(column.column)
     needs_quotes = any(character in name for character in _RESERVED) or name != name.strip()
     if column.quoted or needs_quotes or not name:
         name = '"' + name.replace('"', '""') + '"'
-    return f"{'-' if column.sign < 0 else ''}{name}:{column.unit}"
+    return f"{'-' if column.sign < 0 else ''}{name}"
 
 
 def _pairs(text: str, keys: MapKeys) -> Iterable[tuple[str, tuple[MappedColumn, ...]]]:

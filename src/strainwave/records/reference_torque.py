@@ -100,8 +100,9 @@ def read_reference_Nm(
         If there is no such column, it holds no numbers, or it is that of another signal.
     """
     # Read along with the torque, so that nobody compares a column with itself.
-    columns: dict[str, tuple[MappedColumn, ...]]
-    columns = {"torque": (layout.columns["torque"],), REFERENCE: (column,)}
+    columns: dict[str, tuple[MappedColumn, ...]] = {REFERENCE: (column,)}
+    if "torque" in layout.columns:
+        columns["torque"] = (layout.columns["torque"],)
     table = read_columns(recording, columns, _KEYS)
     torque_Nm = table.values[REFERENCE][:rows]
     usable = np.abs(torque_Nm) <= LARGEST_USABLE
