@@ -81,6 +81,10 @@ docs-images: demo ## The README's picture, made anew by the demo
 bench-accuracy: $(VENV)/.package ## All methods on simulated joints and real recordings, one table
 	$(BIN)/python -m benchmarks.accuracy --out benchmarks/results
 
+.PHONY: bench-faults
+bench-faults: $(VENV)/.package ## Gauges that fail, one after the other: found, when, what is left
+	$(BIN)/python -m benchmarks.faults --out benchmarks/results
+
 .PHONY: test
 test: ## Every test but the slow ones; all are run even when one fails
 	@$(MAKE) --no-print-directory --keep-going test-core test-compile-fail test-usage test-python

@@ -21,6 +21,8 @@ void bind_status(nb::module_& m) {
              "fault: the sample is older than the last one")
       .value("time_not_finite", StatusFlag::time_not_finite,
              "fault: time stamp or interval unusable")
+      .value("gauges_insufficient", StatusFlag::gauges_insufficient,
+             "fault: no gains do without what is wrong, torque held")
       .value("variance_limited", StatusFlag::variance_limited,
              "limit: covariance cut back to its limit")
       .value("covariance_reset", StatusFlag::covariance_reset,
@@ -31,7 +33,13 @@ void bind_status(nb::module_& m) {
       .value("order_above_nyquist", StatusFlag::order_above_nyquist,
              "warning: an order turns over half a cycle a sample")
       .value("temperature_out_of_range", StatusFlag::temperature_out_of_range,
-             "warning: outside the calibrated temperatures");
+             "warning: outside the calibrated temperatures")
+      .value("gauge_lost", StatusFlag::gauge_lost,
+             "warning: a gauge is lost, for good until cleared")
+      .value("gauge_suspected", StatusFlag::gauge_suspected,
+             "warning: a gauge is wrong in this sample")
+      .value("gauges_disagree", StatusFlag::gauges_disagree,
+             "warning: not one gauge alone, or the angle, is wrong");
   m.attr("FAULT_MASK") = fault_mask;
   m.attr("LIMIT_MASK") = limit_mask;
   m.attr("WARNING_MASK") = warning_mask;

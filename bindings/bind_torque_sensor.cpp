@@ -2,15 +2,18 @@
 #include "strainwave/torque_sensor.hpp"
 
 #include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/variant.h>
 
 #include <limits>
 #include <optional>
 #include <tuple>
+#include <utility>
 #include <variant>
 
 #include "bind_gains.hpp"
+#include "bind_gauge_monitor.hpp"
 #include "bind_oscillator_filter.hpp"
 #include "bind_ripple_filter.hpp"
 #include "bind_status.hpp"
@@ -31,13 +34,15 @@ struct SensorSettings {
   TorqueCalibration<double> calibration;
   AnyFilterConfig filter;
   double sample_period_s = RippleSensorConfig<double, 1, 1>{}.sample_period_s;
+  MonitorConfigD monitor = {};
 };
 
 template <class Real, std::size_t MaxGauges, std::size_t MaxPairs>
 RippleSensorConfig<Real, MaxGauges, MaxPairs> chain_of(const SensorSettings& settings,
                                                        const RippleConfigD& filter) {
   const RippleSensorConfig<double, most_gauges, most_pairs> config = {
-      settings.converter, settings.gains, settings.calibration, filter, settings.sample_period_s};
+      settings.converter,       settings.gains,  settings.calibration, filter,
+      settings.sample_period_s, settings.monitor};
   return converted<Real, MaxGauges, MaxPairs>(config);
 }
 
@@ -45,7 +50,7 @@ template <class Real, std::size_t MaxGauges, std::size_t MaxOrders>
 TorqueSensorConfig<Real, MaxGauges, MaxOrders> chain_of(const SensorSettings& settings,
                                                         const OscillatorConfigD& filter) {
   const TorqueSensorConfig<double, most_gauges, most_orders> config = {
-      settings.converter, settings.gains, settings.calibration, filter};
+      settings.converter, settings.gains, settings.calibration, filter, settings.monitor};
   return converted<Real, MaxGauges, MaxOrders>(config);
 }
 
@@ -69,8 +74,9 @@ struct SensorOutputs {
   NewVector<Real> clean_Nm;
   NewVector<Real> ripple_Nm;
   NewVector<std::uint32_t> status;
+  NewVector<std::uint8_t> left_out_gauge;
   explicit SensorOutputs(std::size_t size)
-      : measured_Nm(size), clean_Nm(size), ripple_Nm(size), status(size) {}
+      : measured_Nm(size), clean_Nm(size), ripple_Nm(size), status(size), left_out_gauge(size) {}
 };
 
 /// The chain's interval of a time stamp: 0 where only the next one will tell, and what the chain
@@ -142,6 +148,7 @@ struct ChainInstance {
       out.clean_Nm.data()[k] = reading.torque_Nm;
       out.ripple_Nm.data()[k] = reading.ripple_Nm;
       out.status.data()[k] = reading.status | interval.status;
+      out.left_out_gauge.data()[k] = reading.left_out_gauge;
     }
   }
 };
@@ -191,8 +198,8 @@ AnyInstance make_instance(const SensorSettings& settings, const OscillatorConfig
 }
 
 template <class Real>
-using SensorResults =
-    std::tuple<VectorOut<Real>, VectorOut<Real>, VectorOut<Real>, VectorOut<std::uint32_t>>;
+using SensorResults = std::tuple<VectorOut<Real>, VectorOut<Real>, VectorOut<Real>,
+                                 VectorOut<std::uint32_t>, VectorOut<std::uint8_t>>;
 
 class OwnedSensor {  // nanobind tells types apart by name, also in unnamed namespaces
  public:
@@ -258,7 +265,8 @@ class OwnedSensor {  // nanobind tells types apart by name, also in unnamed name
           },
           instance_);
     }
-    return {out.measured_Nm.give(), out.clean_Nm.give(), out.ripple_Nm.give(), out.status.give()};
+    return {out.measured_Nm.give(), out.clean_Nm.give(), out.ripple_Nm.give(), out.status.give(),
+            out.left_out_gauge.give()};
   }
 
   [[nodiscard]] LearnedD learned_now() const {
@@ -277,6 +285,29 @@ class OwnedSensor {  // nanobind tells types apart by name, also in unnamed name
           } else {
             return LearnedD{};  // never: the instance has the filter of the settings
           }
+        },
+        instance_);
+  }
+
+  /// Number and fault of the lost gauge; 0 and none where none is.
+  [[nodiscard]] std::pair<unsigned, GaugeFault> lost_gauge() const {
+    const auto held = calls_.hold();
+    return std::visit(
+        [](const auto& instance) {
+          return std::pair{unsigned{instance.state.monitor.lost_gauge},
+                           instance.state.monitor.fault};
+        },
+        instance_);
+  }
+  void forget_lost_gauge() {
+    const auto held = calls_.hold();
+    std::visit([](auto& instance) { clear_lost_gauge(instance.state.monitor); }, instance_);
+  }
+  [[nodiscard]] double residual_fluctuation_Nm() const {
+    const auto held = calls_.hold();
+    return std::visit(
+        [](const auto& instance) {
+          return static_cast<double>(instance.state.last_reading.residual_fluctuation_Nm);
         },
         instance_);
   }
@@ -307,8 +338,18 @@ class OwnedSensor {  // nanobind tells types apart by name, also in unnamed name
 SensorSettings make_settings(const Converter<double>& converter, const GainsD& gains,
                              const TorqueCalibration<double>& calibration,
                              const AnyFilterConfig& filter,
-                             const std::optional<double>& sample_period_s) {
+                             const std::optional<double>& sample_period_s,
+                             const std::optional<MonitorConfigD>& monitor) {
   SensorSettings settings = {converter, gains, calibration, filter};
+  settings.monitor = monitor.value_or(MonitorConfigD{});
+  if (monitor) {  // entries beyond the gauges would be left unseen
+    for (std::size_t j = gains.count; j < most_gauges; ++j) {
+      if (monitor->without[j].available) {
+        require(Violation<double>{"without", static_cast<std::int32_t>(j),
+                                  static_cast<double>(j + 1), "", "a gauge that has a gain"});
+      }
+    }
+  }
   if (const auto* const ripple = std::get_if<RippleConfigD>(&filter)) {
     settings.sample_period_s = sample_period_s.value_or(settings.sample_period_s);
     require(check(chain_of<double, most_gauges, most_pairs>(settings, *ripple)));
@@ -332,25 +373,30 @@ void bind_torque_sensor(nb::module_& m) {
           "__init__",
           [](SensorSettings* self, const Converter<double>& converter, const GainsD& gains,
              const TorqueCalibration<double>& calibration, const AnyFilterConfig& filter,
-             const std::optional<double>& sample_period_s) {
+             const std::optional<double>& sample_period_s,
+             const std::optional<MonitorConfigD>& monitor) {
             new (self) SensorSettings(
-                make_settings(converter, gains, calibration, filter, sample_period_s));
+                make_settings(converter, gains, calibration, filter, sample_period_s, monitor));
           },
           nb::kw_only(), "converter"_a, "gains"_a, "calibration"_a, "filter"_a,
-          "sample_period_s"_a = nb::none(),
+          "sample_period_s"_a = nb::none(), "monitor"_a = nb::none(),
           "One gain per channel; a full bridge is one channel. filter: the ripple filter's, "
           "strainwave's default, or the oscillator filter's. sample_period_s: time from one sample "
-          "to the next where a call gives no times; without, 1 ms, or the oscillator filter's own.")
+          "to the next where a call gives no times; without, 1 ms, or the oscillator filter's own. "
+          "monitor: the watch over the gauges; none without.")
       .def("__repr__",
            [](const nb::handle& self) {
-             return repr_of(self,
-                            {"converter", "gains", "calibration", "filter", "sample_period_s"});
+             return repr_of(self, {"converter", "gains", "calibration", "filter", "sample_period_s",
+                                   "monitor"});
            })
       .def_ro("converter", &SensorSettings::converter)
       .def_ro("gains", &SensorSettings::gains)
       .def_ro("calibration", &SensorSettings::calibration)
       .def_ro("filter", &SensorSettings::filter)
-      .def_ro("sample_period_s", &SensorSettings::sample_period_s);
+      .def_ro("sample_period_s", &SensorSettings::sample_period_s)
+      .def_prop_ro("monitor", [](const SensorSettings& self) {
+        return self.monitor.active ? std::optional(self.monitor) : std::nullopt;
+      });
 
   nb::class_<OwnedSensor> sensor(m, "TorqueSensor",
                                  "Converter codes in, torque with the ripple removed out; "
@@ -364,6 +410,12 @@ void bind_torque_sensor(nb::module_& m) {
       .def("reset", &OwnedSensor::reset, "Back to the state at power-up.")
       .def("copy", &OwnedSensor::copy, "An independent sensor in the same state.")
       .def("learned", &OwnedSensor::learned_now, "The ripple filter's coefficients now.")
+      .def_prop_ro("lost_gauge", &OwnedSensor::lost_gauge,
+                   "Number, from 1, and fault of the lost gauge; 0 and none where none is.")
+      .def("clear_lost_gauge", &OwnedSensor::forget_lost_gauge,
+           "Forget the loss: the gauge was repaired.")
+      .def_prop_ro("residual_fluctuation_Nm", &OwnedSensor::residual_fluctuation_Nm,
+                   "rms of the fluctuation that the gains in use leave, as the monitor was told.")
       .def_prop_ro("counters", &OwnedSensor::counters, "How often each status flag was raised.");
   const auto bind_process = [&sensor](const char* name, auto process, const char* words) {
     sensor.def(name, process, "codes"_a.noconvert(), "motor_speed_rad_s"_a.noconvert() = nb::none(),
@@ -372,9 +424,10 @@ void bind_torque_sensor(nb::module_& m) {
                "temperature_degC"_a.noconvert() = nb::none(), "sequence"_a.noconvert() = nb::none(),
                "time_s"_a.noconvert() = nb::none(), "angle_referenced"_a = true, words);
   };
-  bind_process("process_float64", &OwnedSensor::process<double>,
-               "Measured torque, clean torque, ripple and status of contiguous float64 arrays, "
-               "without copies.");
+  bind_process(
+      "process_float64", &OwnedSensor::process<double>,
+      "Measured and clean torque, ripple, status and left-out gauge of contiguous float64 arrays, "
+      "without copies.");
   bind_process("process_float32", &OwnedSensor::process<float>,
                "The same of contiguous float32 arrays; angles and times stay float64.");
 }

@@ -258,6 +258,7 @@ void bind_gear(nb::module_& m);
 void bind_fluctuation(nb::module_& m);
 void bind_bridge(nb::module_& m);
 void bind_gains(nb::module_& m);
+void bind_gauge_monitor(nb::module_& m);
 void bind_calibration(nb::module_& m);
 void bind_oscillator_filter(nb::module_& m);
 void bind_ripple_config(nb::module_& m);

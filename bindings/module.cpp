@@ -12,6 +12,7 @@ NB_MODULE(_core, m) {
   bind_fluctuation(m);
   bind_bridge(m);
   bind_gains(m);
+  bind_gauge_monitor(m);
   bind_calibration(m);
   bind_oscillator_filter(m);
   bind_ripple_config(m);

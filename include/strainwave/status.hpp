@@ -22,12 +22,16 @@ enum class StatusFlag : std::uint32_t {
   sample_repeated = 1U << 5U,             ///< fault: the sample was seen before
   sample_out_of_order = 1U << 6U,         ///< fault: the sample is older than the last one
   time_not_finite = 1U << 7U,             ///< fault: time stamp or interval unusable
+  gauges_insufficient = 1U << 8U,         ///< fault: no gains do without what is wrong, torque held
   variance_limited = 1U << 12U,           ///< limit: covariance cut back to its limit
   covariance_reset = 1U << 13U,           ///< limit: covariance unusable, set back to its start
   at_rest = 1U << 20U,                    ///< warning: too little travel, adaptation waits
   samples_missing = 1U << 21U,            ///< warning: samples are missing before this one
   order_above_nyquist = 1U << 22U,        ///< warning: an order turns over half a cycle a sample
   temperature_out_of_range = 1U << 23U,   ///< warning: outside the calibrated temperatures
+  gauge_lost = 1U << 24U,                 ///< warning: a gauge is lost, for good until cleared
+  gauge_suspected = 1U << 25U,            ///< warning: a gauge is wrong in this sample
+  gauges_disagree = 1U << 26U,            ///< warning: not one gauge alone, or the angle, is wrong
 };
 
 /// A set of StatusFlag bits; 0 means that nothing is to be said.

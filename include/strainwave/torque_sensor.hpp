@@ -5,6 +5,9 @@
 ///     codes -> volts (bridge.hpp) -> weighted sum (gains.hpp) -> torque (calibration.hpp)
 ///           -> ripple removed (ripple_filter.hpp, or oscillator_filter.hpp)
 ///
+/// With a gauge monitor (gauge_monitor.hpp) a gauge that fails is left out, and the gains solved
+/// beforehand without it are used; by default there is none.
+///
 /// Which filter removes the ripple, the configuration's type says:
 ///
 ///     RippleSensorConfig   the ripple filter, strainwave's default: needs the motor's angle
@@ -24,6 +27,7 @@
 #include "strainwave/bridge.hpp"
 #include "strainwave/calibration.hpp"
 #include "strainwave/gains.hpp"
+#include "strainwave/gauge_monitor.hpp"
 #include "strainwave/oscillator_filter.hpp"
 #include "strainwave/ripple_filter.hpp"
 #include "strainwave/status.hpp"
@@ -47,6 +51,7 @@ struct TorqueChainConfig<Real, MaxGauges, RippleFilterConfig<Real, MaxPairs>> {
   RippleFilterConfig<Real, MaxPairs> filter = {};
   /// Time from one sample number to the next, for samples that come without their interval.
   Real sample_period_s = Real(1e-3);
+  GaugeMonitorConfig<Real, MaxGauges> monitor = {};
 };
 
 template <class Real, std::size_t MaxGauges, std::size_t MaxOrders>
@@ -55,6 +60,7 @@ struct TorqueChainConfig<Real, MaxGauges, OscillatorFilterConfig<Real, MaxOrders
   Gains<Real, MaxGauges> gains = {};  ///< one gain per channel; a full bridge is one channel
   TorqueCalibration<Real> calibration = {};
   OscillatorFilterConfig<Real, MaxOrders> filter = {};  ///< the sample period is in here
+  GaugeMonitorConfig<Real, MaxGauges> monitor = {};
 };
 
 /// Codes to torque with the ripple filter.  MaxPairs: room for its pairs of coefficients.
@@ -94,6 +100,10 @@ struct TorqueReading {
   Real torque_Nm = Real(0);           ///< ripple removed
   Real ripple_Nm = Real(0);
   Status status = 0;
+  std::uint8_t left_out_gauge = 0;  ///< number of the gauge that is not used, from 1; 0: none
+  GaugeFault gauge_fault = GaugeFault::none;  ///< of the lost gauge; none while it is suspected
+  /// rms of the fluctuation that the gains in use leave, as far as the monitor was told; 0 without.
+  Real residual_fluctuation_Nm = Real(0);
 };
 
 template <class Real, std::size_t MaxGauges, class FilterConfig>
@@ -106,6 +116,7 @@ struct TorqueChainState {
   Real refused_interval_s = Real(0);  ///< of samples refused by number since the last one taken
   Real last_temperature_degC = Real(20);
   EventCounters counters = {};
+  GaugeMonitorState<Real, MaxGauges> monitor = {};
 };
 
 template <class Real, std::size_t MaxGauges, std::size_t MaxPairs>
@@ -271,6 +282,52 @@ template <class Real, std::size_t MaxGauges, std::size_t MaxOrders>
   return to;
 }
 
+/// What the gains in use make of the gauges.
+template <class Real>
+struct GaugeSum {
+  Real volts = Real(0);
+  bool saturated = false;  ///< of the gauges in use
+  bool usable = true;
+};
+
+/// The sum of the gauges without the one that the monitor leaves out.
+template <class Real, std::size_t MaxGauges, class FilterConfig>
+constexpr GaugeSum<Real> watched_sum(const TorqueChainConfig<Real, MaxGauges, FilterConfig>& config,
+                                     TorqueChainState<Real, MaxGauges, FilterConfig>& state,
+                                     const TorqueSensorSample<MaxGauges, Real>& sample,
+                                     std::uint32_t missing, const Real* volts,
+                                     TorqueReading<Real>& reading) {
+  const GaugeMonitorConfig<Real, MaxGauges>& monitor = config.monitor;
+  GaugeSignals<Real> signals;
+  signals.count = active_gauges(config.gains);
+  signals.codes = sample.codes;
+  signals.volts = volts;
+  signals.motor_phase = sample.motor_phase;
+  signals.phase_valid = sample.phase_valid;
+  signals.phase_referenced = sample.phase_referenced;
+  signals.missing = missing;
+  const GaugeVerdict verdict = watch(monitor, state.monitor, config.converter, signals);
+  reading.status |= verdict.status;
+  reading.left_out_gauge = verdict.left_out;
+  reading.gauge_fault = state.monitor.fault;
+  GaugeSum<Real> sum;
+  sum.usable = verdict.usable;
+  Real residual_V = monitor.residual_fluctuation_V;
+  if (verdict.left_out != 0 && verdict.usable) {
+    const GainsWithoutGauge<Real, MaxGauges>& others = monitor.without[verdict.left_out - 1U];
+    sum.volts = weighted_sum(others.gains, volts) - others.zero_shift_V;
+    residual_V = others.residual_fluctuation_V;
+  } else {
+    sum.volts = weighted_sum(config.gains, volts);
+  }
+  reading.residual_fluctuation_Nm = residual_V * absolute(config.calibration.gain_Nm_per_V);
+  for (std::size_t j = 0; j < MaxGauges && j < signals.count; ++j) {
+    sum.saturated = sum.saturated ||
+                    (j + 1 != verdict.left_out && is_saturated(config.converter, sample.codes[j]));
+  }
+  return sum;
+}
+
 /// Faults that say that the filter has refused a row as a whole.
 inline constexpr Status refused_row_mask = mask(StatusFlag::sample_repeated) |
                                            mask(StatusFlag::sample_out_of_order) |
@@ -311,25 +368,29 @@ inline TorqueReading<Real> step(const TorqueChainConfig<Real, MaxGauges, FilterC
   state.started = true;
   state.last_sample = sample;
 
-  if (saturated) {
+  Real volts[MaxGauges] = {};
+  for (std::size_t j = 0; j < gauge_count && j < MaxGauges; ++j) {
+    volts[j] = to_volts(config.converter, sample.codes[j]);
+  }
+  const detail::GaugeSum<Real> sum =
+      config.monitor.active
+          ? detail::watched_sum(config, state, sample, missing, volts, reading)
+          : detail::GaugeSum<Real>{weighted_sum(config.gains, volts), saturated, true};
+  if (sum.saturated) {
     reading.status |= mask(StatusFlag::gauge_saturated);
   }
   reading.status |= detail::take_temperature(config.calibration, state.last_temperature_degC,
                                              sample.temperature_degC);
 
-  Real volts[MaxGauges] = {};
-  for (std::size_t j = 0; j < gauge_count && j < MaxGauges; ++j) {
-    volts[j] = to_volts(config.converter, sample.codes[j]);
-  }
   auto input = detail::filter_sample(config, state, sample, missing);
-  input.torque_valid = !saturated;
-  input.measured_torque_Nm = torque_of_volts_Nm(
-      config.calibration, weighted_sum(config.gains, volts), state.last_temperature_degC);
+  input.torque_valid = !sum.saturated && sum.usable;
+  input.measured_torque_Nm =
+      torque_of_volts_Nm(config.calibration, sum.volts, state.last_temperature_degC);
   input.expected_torque_Nm = sample.expected_torque_Nm;
   input.motor_phase = sample.motor_phase;
   input.phase_valid = sample.phase_valid;
   const auto filtered = step(config.filter, state.filter, input);
-  if (!saturated && is_usable_torque(input.measured_torque_Nm) &&
+  if (input.torque_valid && is_usable_torque(input.measured_torque_Nm) &&
       (filtered.status & detail::refused_row_mask) == 0U) {
     reading.torque_measured_Nm = input.measured_torque_Nm;
   }
@@ -346,9 +407,9 @@ template <class Real, std::size_t MaxGauges, std::size_t MaxPairs, class FromRea
           std::size_t FromMaxGauges, std::size_t FromMaxPairs>
 [[nodiscard]] constexpr RippleSensorConfig<Real, MaxGauges, MaxPairs> converted(
     const RippleSensorConfig<FromReal, FromMaxGauges, FromMaxPairs>& from) {
-  return {converted<Real>(from.converter), converted<Real, MaxGauges>(from.gains),
-          converted<Real>(from.calibration), converted<Real, MaxPairs>(from.filter),
-          static_cast<Real>(from.sample_period_s)};
+  return {converted<Real>(from.converter),         converted<Real, MaxGauges>(from.gains),
+          converted<Real>(from.calibration),       converted<Real, MaxPairs>(from.filter),
+          static_cast<Real>(from.sample_period_s), converted<Real, MaxGauges>(from.monitor)};
 }
 
 template <class Real, std::size_t MaxGauges, std::size_t MaxOrders, class FromReal,
@@ -356,7 +417,8 @@ template <class Real, std::size_t MaxGauges, std::size_t MaxOrders, class FromRe
 [[nodiscard]] constexpr TorqueSensorConfig<Real, MaxGauges, MaxOrders> converted(
     const TorqueSensorConfig<FromReal, FromMaxGauges, FromMaxOrders>& from) {
   return {converted<Real>(from.converter), converted<Real, MaxGauges>(from.gains),
-          converted<Real>(from.calibration), converted<Real, MaxOrders>(from.filter)};
+          converted<Real>(from.calibration), converted<Real, MaxOrders>(from.filter),
+          converted<Real, MaxGauges>(from.monitor)};
 }
 
 namespace detail {
@@ -371,6 +433,9 @@ template <class Real, std::size_t MaxGauges, class FilterConfig>
     return violation;
   }
   if (const auto violation = check(config.calibration); !violation.ok()) {
+    return violation;
+  }
+  if (const auto violation = check(config.monitor, active_gauges(config.gains)); !violation.ok()) {
     return violation;
   }
   return check(config.filter);

@@ -84,12 +84,20 @@ template <class Real>
   std::uint64_t denominator = 0;
   double rest = value;
   for (int term = 0; term < 64; ++term) {
-    const auto whole = static_cast<std::uint64_t>(rest);
-    const std::uint64_t next_numerator = whole * numerator + previous_numerator;
-    const std::uint64_t next_denominator = whole * denominator + previous_denominator;
-    if (next_numerator > largest_rational_part || next_denominator > largest_rational_part) {
+    auto whole = static_cast<std::uint64_t>(rest);
+    // The last step goes as far as there is room: between two convergents the error falls, too.
+    if (numerator > 0 && whole > (largest_rational_part - previous_numerator) / numerator) {
+      whole = (largest_rational_part - previous_numerator) / numerator;
+    }
+    if (denominator > 0 && whole > (largest_rational_part - previous_denominator) / denominator) {
+      whole = (largest_rational_part - previous_denominator) / denominator;
+    }
+    const bool is_last = whole < static_cast<std::uint64_t>(rest);
+    if (is_last && whole == 0) {
       break;
     }
+    const std::uint64_t next_numerator = whole * numerator + previous_numerator;
+    const std::uint64_t next_denominator = whole * denominator + previous_denominator;
     previous_numerator = numerator;
     previous_denominator = denominator;
     numerator = next_numerator;
@@ -97,7 +105,7 @@ template <class Real>
     const double error =
         absolute(static_cast<double>(numerator) / static_cast<double>(denominator) - value);
     const double fraction = rest - static_cast<double>(whole);
-    if (error <= 1e-12 * value || fraction <= 0.0) {
+    if (is_last || error <= 1e-12 * value || fraction <= 0.0) {
       break;
     }
     rest = 1.0 / fraction;

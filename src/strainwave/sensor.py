@@ -29,12 +29,16 @@ class SensorResult:
         Predicted ripple, shape (samples,), Nm.
     status : numpy.ndarray
         Bits of `strainwave.StatusFlag`, shape (samples,), uint32.
+    left_out_gauge : numpy.ndarray
+        Number of the gauge that the torque was made without, from 1, 0 where all are used; shape
+        (samples,), uint8. Without a monitor always 0.
     """
 
     torque_measured_Nm: NDArray[Any]
     torque_Nm: NDArray[Any]
     ripple_Nm: NDArray[Any]
     status: NDArray[np.uint32]
+    left_out_gauge: NDArray[np.uint8]
 
 
 class TorqueSensor:
@@ -85,6 +89,30 @@ class TorqueSensor:
         """How many samples there were, and how often each status flag was raised."""
         return dict(self._sensor.counters)
 
+    @property
+    def lost_gauge(self) -> int:
+        """Number of the gauge that the monitor found lost, from 1; 0 where none is."""
+        number, _ = self._sensor.lost_gauge
+        return number
+
+    @property
+    def gauge_fault(self) -> _core.GaugeFault:
+        """What has become of the lost gauge."""
+        _, fault = self._sensor.lost_gauge
+        return fault
+
+    @property
+    def residual_fluctuation_Nm(self) -> float:
+        """Root mean square of the fluctuation that the gains now in use leave, Nm.
+
+        As the monitor was told; 0 without a monitor and before the first sample.
+        """
+        return self._sensor.residual_fluctuation_Nm
+
+    def clear_lost_gauge(self) -> None:
+        """Forget the loss of a gauge, after its repair; the monitor begins anew."""
+        self._sensor.clear_lost_gauge()
+
     def process(
         self,
         codes: ArrayLike,
@@ -127,7 +155,7 @@ class TorqueSensor:
         Returns
         -------
         SensorResult
-            Torque before and after, ripple and status of every sample.
+            Torque before and after, ripple, status and left-out gauge of every sample.
 
         Raises
         ------

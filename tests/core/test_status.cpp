@@ -21,12 +21,16 @@ TEST(Status, NumbersThatLogsKeep) {
   EXPECT_EQ(mask(StatusFlag::sample_repeated), 32U);
   EXPECT_EQ(mask(StatusFlag::sample_out_of_order), 64U);
   EXPECT_EQ(mask(StatusFlag::time_not_finite), 128U);
+  EXPECT_EQ(mask(StatusFlag::gauges_insufficient), 256U);
   EXPECT_EQ(mask(StatusFlag::variance_limited), 0x1000U);
   EXPECT_EQ(mask(StatusFlag::covariance_reset), 0x2000U);
   EXPECT_EQ(mask(StatusFlag::at_rest), 0x100000U);
   EXPECT_EQ(mask(StatusFlag::samples_missing), 0x200000U);
   EXPECT_EQ(mask(StatusFlag::order_above_nyquist), 0x400000U);
   EXPECT_EQ(mask(StatusFlag::temperature_out_of_range), 0x800000U);
+  EXPECT_EQ(mask(StatusFlag::gauge_lost), 0x1000000U);
+  EXPECT_EQ(mask(StatusFlag::gauge_suspected), 0x2000000U);
+  EXPECT_EQ(mask(StatusFlag::gauges_disagree), 0x4000000U);
 }
 
 TEST(Status, MasksDivideAllBits) {

@@ -185,6 +185,9 @@ TEST(Units, RationalFromNumbers) {
   EXPECT_EQ(rational_from(0.1), (Rational{1, 10}));
   EXPECT_EQ(rational_from(101.0 / 100.0), (Rational{101, 100}));
   EXPECT_EQ(rational_from(2147483647.0), (Rational{2147483647U, 1}));
+  // Its convergents are 646363/52, off by 9e-12 of it, and one beyond 2^31: between them is enough.
+  const double between = 12430.057692196395;
+  EXPECT_NEAR(strainwave::to_real<double>(rational_from(between)) / between, 1.0, 1e-12);
   for (const double wrong : {0.0, -1.0, std::nan(""), HUGE_VAL, 2147483648.0, 1e-10, 5e-324}) {
     EXPECT_FALSE(strainwave::is_valid(rational_from(wrong))) << wrong;
   }

@@ -200,7 +200,7 @@ def test_potentiometer_steps() -> None:
     assert found["up_to_N"][50] == pytest.approx(spread * np.sqrt(2 * np.log(2)), rel=0.05)
 
 
-def test_lost_gauge() -> None:
+def test_gauge_watch() -> None:
     two = Wave((56.7, 2.835))
     case = LayoutCase(5, 2, Tolerances(position_deg=1.0), two, lost_gauge=True)
     found = study_layout(case, 0.5, 5000)

@@ -14,6 +14,7 @@ from strainwave.joint import (
     AngleColumn,
     Gains,
     GainsWithoutGauge,
+    GaugeSignal,
     Gear,
     Identity,
     Joint,
@@ -157,6 +158,18 @@ def test_gains_for_a_lost_gauge() -> None:
         Gains(gains=(1.0, 1.0, 1.0), without_gauge=(lost, lost))
     with pytest.raises(ValidationError, match="4 gains but 3 in the entry"):
         Gains(gains=(1.0, 1.0, 1.0, 1.0), without_gauge=(lost,))
+
+
+def test_signals_of_the_gauges_are_as_many() -> None:
+    one = GaugeSignal(zero_V=0.1, amplitudes_V=(1.0,), phases_rad=(0.5,))
+    assert Gains(gains=(1.0, 1.0), gauge_signals=(one, one)).gauge_signals == (one, one)
+    with pytest.raises(ValidationError, match="2 gains but 1 gauge_signals"):
+        Gains(gains=(1.0, 1.0), gauge_signals=(one,))
+    with pytest.raises(ValidationError, match="1 amplitudes_V but 2 phases_rad"):
+        GaugeSignal(zero_V=0.1, amplitudes_V=(1.0,), phases_rad=(0.5, 0.2))
+    two = GaugeSignal(zero_V=0.1, amplitudes_V=(1.0, 0.1), phases_rad=(0.5, 0.2))
+    with pytest.raises(ValidationError, match="different numbers of harmonics"):
+        Gains(gains=(1.0, 1.0), gauge_signals=(one, two))
 
 
 @pytest.mark.parametrize(

@@ -16,6 +16,7 @@ from strainwave.joint import (
     Gains,
     GainsWithoutGauge,
     Gauges,
+    GaugeSignal,
     Gear,
     Joint,
     Misalignment,
@@ -131,6 +132,22 @@ def gauge_sections(draw: st.DrawFn) -> dict[str, Any]:
                 for gauge in lost
             )
         ),
+        gauge_signals=maybe(
+            tuples(
+                built(
+                    GaugeSignal,
+                    zero_V=FINITE,
+                    amplitudes_V=tuples(FINITE, 2, 2),
+                    phases_rad=tuples(FINITE, 2, 2),
+                ),
+                count,
+                count,
+            )
+        ),
+        noise_V=maybe(st.floats(1e-9, 1.0)),
+        consistency_limit_V=maybe(st.floats(1e-9, 1.0)),
+        consistency_limit_share=maybe(st.floats(0.0, 1.0)),
+        detection_time_s=maybe(st.floats(1e-3, 1.0)),
     )
     signals = built(
         Signals,

@@ -6,11 +6,12 @@ from strainwave.configuration.filters import (
     oscillator_filter_of,
     ripple_filter_of,
 )
+from strainwave.configuration.gauge_monitor import gauge_monitor_of
+from strainwave.configuration.gear import gear_of
 from strainwave.configuration.sensor import (
     calibration_of,
     converter_of,
     gains_of,
-    gear_of,
     sensor_of,
     verify,
 )
@@ -20,6 +21,7 @@ __all__ = [
     "converter_of",
     "frozen_terms_of",
     "gains_of",
+    "gauge_monitor_of",
     "gear_of",
     "learned_of",
     "oscillator_filter_of",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING
 
 from strainwave import _core
@@ -10,6 +11,8 @@ from strainwave.configuration.filters import (
     ripple_filter_of,
     running_ripple_filter,
 )
+from strainwave.configuration.gauge_monitor import gauge_monitor_of
+from strainwave.configuration.gear import gear_of
 from strainwave.configuration.sections import required
 from strainwave.errors import InputError
 from strainwave.joint import RippleFilter
@@ -18,33 +21,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from strainwave.joint import Joint
-
-
-def gear_of(joint: Joint) -> _core.Gear:
-    """Build the gear of a joint.
-
-    Parameters
-    ----------
-    joint : Joint
-        A joint with a section ``[gear]``.
-
-    Returns
-    -------
-    Gear
-        Ratio, configuration, direction and rated torque.
-
-    Raises
-    ------
-    InputError
-        If the section is missing.
-    """
-    gear = required(joint, "gear", joint.gear)
-    return _core.Gear(
-        ratio=gear.ratio,
-        configuration=_core.GearConfiguration[gear.configuration],
-        rated_torque_Nm=gear.rated_torque_Nm,
-        output_direction=gear.output_direction,
-    )
 
 
 def calibration_of(joint: Joint) -> _core.TorqueCalibration:
@@ -97,6 +73,7 @@ def sensor_of(joint: Joint) -> _core.TorqueSensorConfig:
         A joint with the sections ``[gear]``, ``[gauges]`` (converter included),
         ``[torque_calibration]`` and ``[ripple_filter]``, whose ``method`` is the filter; without
         ``[gains]`` they are all 1. The ripple filter takes its sample period from ``[signals]``.
+        Where ``[gains]`` has ``without_gauge`` or ``gauge_signals``, lost gauges are watched for.
 
     Returns
     -------
@@ -122,6 +99,7 @@ def sensor_of(joint: Joint) -> _core.TorqueSensorConfig:
         calibration=calibration_of(joint),
         filter=filter_config,
         sample_period_s=sample_period_s,
+        monitor=gauge_monitor_of(joint, sample_period_s),
     )
 
 
@@ -211,6 +189,7 @@ def verify(joint: Joint) -> None:
         ("gear", has_gear, gear_of),
         ("gauges", has_converter, converter_of),
         ("gains", joint.gains is not None, gains_of),
+        ("gains", has_converter and has_gear, partial(gauge_monitor_of, sample_period_s=1e-3)),
         ("torque_calibration", joint.torque_calibration is not None and has_gear, calibration_of),
         ("ripple_filter", has_filter, filter_builder),
     )

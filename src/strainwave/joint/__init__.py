@@ -9,7 +9,7 @@ from strainwave.joint.file import (
     read_joint,
     write_joint,
 )
-from strainwave.joint.gains import Gains, GainsWithoutGauge
+from strainwave.joint.gains import Gains, GainsWithoutGauge, GaugeSignal
 from strainwave.joint.gauges import Gauges, Rosette
 from strainwave.joint.gear import Gear
 from strainwave.joint.migrations import SCHEMA_VERSION
@@ -42,6 +42,7 @@ __all__ = [
     "Conversion",
     "Gains",
     "GainsWithoutGauge",
+    "GaugeSignal",
     "Gauges",
     "Gear",
     "Identity",

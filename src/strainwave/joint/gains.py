@@ -41,6 +41,31 @@ class GainsWithoutGauge(FilePart):
         return self
 
 
+class GaugeSignal(FilePart):
+    """What one gauge's signal is made of besides torque: its zero and its fluctuation."""
+
+    zero_V: Annotated[float, Unit("V")] = Field(
+        description="Signal without torque, the fluctuation taken out"
+    )
+    amplitudes_V: ListOf[Annotated[float, Unit("V")]] = Field(
+        max_length=4, description="Amplitude of the fluctuation's harmonics i = 1, 2, ..."
+    )
+    phases_rad: ListOf[Annotated[float, Unit("rad")]] = Field(
+        max_length=4,
+        description="Phase of each: the fluctuation is the sum of amplitude times "
+        "sin(2 i m beta + phase), the gauge's position included",
+    )
+
+    @model_validator(mode="after")
+    def _has_a_phase_an_amplitude(self) -> GaugeSignal:
+        if len(self.phases_rad) != len(self.amplitudes_V):
+            raise ValueError(
+                f"has {len(self.amplitudes_V)} amplitudes_V but {len(self.phases_rad)} phases_rad; "
+                "expected one phase an amplitude"
+            )
+        return self
+
+
 class Gains(Section):
     """Gain of every gauge; the sensor voltage is the sum of gain times gauge voltage.
 
@@ -77,6 +102,31 @@ class Gains(Section):
     without_gauge: ListOf[GainsWithoutGauge] = Field(
         default=(), description="Gains solved beforehand for the loss of one gauge"
     )
+    gauge_signals: ListOf[GaugeSignal] | None = Field(
+        default=None,
+        description="What each gauge reads besides torque, so that one that fails is found",
+    )
+    noise_V: Annotated[float, Unit("V")] | None = Field(
+        default=None, gt=0.0, description="Standard deviation of the noise of one gauge"
+    )
+    consistency_limit_V: Annotated[float, Unit("V")] | None = Field(
+        default=None,
+        gt=0.0,
+        description="Length of what sound gauges leave beside torque and fluctuation, at most, "
+        "without torque",
+    )
+    consistency_limit_share: Annotated[float, Unit("1")] | None = Field(
+        default=None,
+        ge=0.0,
+        description="By how much that length grows with that of the torque in the gauges' signals",
+    )
+    detection_time_s: Annotated[float, Unit("s")] | None = Field(
+        default=None,
+        gt=0.0,
+        le=10.0,
+        description="For how long a gauge is seen to be wrong until it is lost for good; where left "
+        "out, 0.01",
+    )
 
     @model_validator(mode="after")
     def _lists_agree(self) -> Gains:
@@ -103,4 +153,21 @@ class Gains(Section):
                     f"has {count} gains but {len(entry.gains)} in the entry of without_gauge for "
                     f"gauge {entry.gauge}; expected one for each gauge, 0 for the failed one"
                 )
+        return self
+
+    @model_validator(mode="after")
+    def _gauge_signals_agree(self) -> Gains:
+        if self.gauge_signals is None:
+            return self
+        count = len(self.gains)
+        if len(self.gauge_signals) != count:
+            raise ValueError(
+                f"has {count} gains but {len(self.gauge_signals)} gauge_signals; expected one for "
+                "each gauge, or none"
+            )
+        if len({len(signal.amplitudes_V) for signal in self.gauge_signals}) > 1:
+            raise ValueError(
+                "has gauge_signals of different numbers of harmonics; expected as many "
+                "amplitudes_V for every gauge"
+            )
         return self

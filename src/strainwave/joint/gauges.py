@@ -72,6 +72,10 @@ class Gauges(Section):
         description="Code at converter_minimum_V: 0 for straight binary, -2^(bits-1) for two's "
         "complement",
     )
+    torn_gauge_rail: Literal["lower", "upper"] | None = Field(
+        default=None,
+        description="Rail to which a torn gauge drives its amplifier, where the wiring says which",
+    )
     rosettes: ListOf[Rosette] = Field(
         min_length=1, description="The rosettes; gauge 1 is the first of them"
     )

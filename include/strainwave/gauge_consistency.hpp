@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file gauge_consistency.hpp
+/// The parity check of the gauges: what is left of their signals beside torque and wave, and which
+/// gauge's error explains it.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "strainwave/bridge.hpp"
+#include "strainwave/gauge_monitor_config.hpp"
+#include "strainwave/units.hpp"
+
+namespace strainwave {
+
+/// A sample of all gauges, as the chain has it.
+template <class Real>
+struct GaugeSignals {
+  std::size_t count = 0;
+  const ConverterCode* codes = nullptr;
+  const Real* volts = nullptr;
+  Phase motor_phase = {};
+  bool phase_valid = true;
+  bool phase_referenced = true;  ///< false: angle from an unknown zero, no prediction
+  std::uint32_t missing = 0;     ///< samples that never arrived before this one
+};
+
+namespace detail {
+
+/// The gauges' signals with what is known of them taken out: zeros, and the wave at its angle.
+template <class Real, std::size_t MaxGauges>
+constexpr void take_out_the_known(const ConsistencyCheck<Real, MaxGauges>& parity,
+                                  const GaugeSignals<Real>& signals, Real travel_turns,
+                                  Real* left_V) {
+  for (std::size_t j = 0; j < MaxGauges && j < signals.count; ++j) {
+    left_V[j] = signals.volts[j] - parity.zero_V[j];
+  }
+  if (parity.harmonic_count == 0) {
+    return;
+  }
+  Real behind_turns = travel_turns * parity.delay_samples;
+  if (signals.missing > 0) {
+    behind_turns /= Real(1) + static_cast<Real>(signals.missing);
+  }
+  Phase phase = signals.motor_phase;
+  if (behind_turns != Real(0) && absolute(behind_turns) <= Real(1e6F)) {
+    phase = phase - phase_from_turns(behind_turns);
+  }
+  // The second harmonic of the angle is the first one of the wave.
+  const CosSin<Real> first =
+      cos_sin_of_fraction<Real>(2U * order_fraction(phase, parity.wave_factor));
+  CosSin<Real> wave = first;
+  for (std::size_t i = 0; i < most_watched_harmonics && i < parity.harmonic_count; ++i) {
+    for (std::size_t j = 0; j < MaxGauges && j < signals.count; ++j) {
+      left_V[j] -= parity.wave_V[j][i].cosine * wave.sine + parity.wave_V[j][i].sine * wave.cosine;
+    }
+    wave = {wave.cosine * first.cosine - wave.sine * first.sine,
+            wave.sine * first.cosine + wave.cosine * first.sine};
+  }
+}
+
+/// What is left of the gauges' signals beside the directions of torque and wave.
+template <class Real, std::size_t MaxGauges>
+struct Parity {
+  Real left_V[MaxGauges] = {};
+  Real shares[MaxGauges] = {};  ///< what of a gauge's own error can be seen, squared: 0 to 1
+  Real squared_V2 = Real(0);    ///< of all gauges
+  Real torque_V = Real(0);      ///< length along the direction of the torque
+};
+
+template <class Real, std::size_t MaxGauges>
+[[nodiscard]] constexpr Parity<Real, MaxGauges> parity_of(
+    const ConsistencyCheck<Real, MaxGauges>& parity, std::size_t count, const Real* signal_V) {
+  Parity<Real, MaxGauges> found;
+  for (std::size_t j = 0; j < MaxGauges && j < count; ++j) {
+    found.left_V[j] = signal_V[j];
+    found.shares[j] = Real(1);
+  }
+  for (std::size_t d = 0; d < most_signal_directions && d < parity.direction_count; ++d) {
+    const Real* const direction = parity.directions[d];
+    Real along_V = Real(0);
+    for (std::size_t j = 0; j < MaxGauges && j < count; ++j) {
+      along_V += direction[j] * signal_V[j];
+    }
+    for (std::size_t j = 0; j < MaxGauges && j < count; ++j) {
+      found.left_V[j] -= direction[j] * along_V;
+      found.shares[j] -= direction[j] * direction[j];
+    }
+    found.torque_V = d == 0 ? along_V : found.torque_V;
+  }
+  for (std::size_t j = 0; j < MaxGauges && j < count; ++j) {
+    found.squared_V2 += found.left_V[j] * found.left_V[j];
+  }
+  return found;
+}
+
+/// Share of a gauge's error below which nothing can be told of it.
+inline constexpr float least_share = 1e-3F;
+
+/// Replaces a gauge by what the others say of it: nothing of its own error is left.
+template <class Real, std::size_t MaxGauges>
+constexpr void leave_out(const ConsistencyCheck<Real, MaxGauges>& parity, std::size_t count,
+                         std::size_t gauge, Parity<Real, MaxGauges>& found) {
+  if (gauge >= MaxGauges || !(found.shares[gauge] > static_cast<Real>(least_share))) {
+    return;
+  }
+  const Real of_gauge = Real(1) / found.shares[gauge];
+  const Real error_V = found.left_V[gauge] * of_gauge;
+  found.squared_V2 -= found.left_V[gauge] * error_V;
+  found.torque_V -= parity.directions[0][gauge] * error_V;
+  for (std::size_t j = 0; j < MaxGauges && j < count; ++j) {
+    if (j == gauge) {
+      continue;
+    }
+    Real coupling = Real(0);
+    for (std::size_t d = 0; d < most_signal_directions && d < parity.direction_count; ++d) {
+      coupling -= parity.directions[d][j] * parity.directions[d][gauge];
+    }
+    found.left_V[j] -= coupling * error_V;
+    found.shares[j] -= coupling * coupling * of_gauge;
+  }
+  found.left_V[gauge] = Real(0);
+  found.shares[gauge] = Real(0);
+}
+
+/// The gauge whose error explains the most of what is left; count where there is none.
+template <class Real, std::size_t MaxGauges>
+[[nodiscard]] constexpr std::size_t likeliest(const Parity<Real, MaxGauges>& found,
+                                              std::size_t count) {
+  std::size_t best = count;
+  Real best_square = Real(0);
+  Real best_share = Real(1);
+  for (std::size_t j = 0; j < MaxGauges && j < count; ++j) {
+    const Real square = found.left_V[j] * found.left_V[j];
+    if (found.shares[j] > static_cast<Real>(least_share) &&
+        square * best_share > best_square * found.shares[j]) {
+      best = j;
+      best_square = square;
+      best_share = found.shares[j];
+    }
+  }
+  return best;
+}
+
+template <class Real, std::size_t MaxGauges>
+[[nodiscard]] constexpr Real squared_limit_V2(const ConsistencyCheck<Real, MaxGauges>& parity,
+                                              Real torque_V) {
+  const Real limit_V = parity.limit_V + parity.limit_per_V * absolute(torque_V);
+  return limit_V * limit_V;
+}
+
+}  // namespace detail
+
+}  // namespace strainwave
