@@ -61,7 +61,9 @@ def test_only_changed_lines_change_when_a_section_is_set() -> None:
     assert joint.gear is not None
     new_gear = joint.gear.model_copy(update={"rated_torque_Nm": 90.0})
     joint_file.set_section("gear", new_gear, PROVENANCE)
-    before, after = TEXT.splitlines(), joint_file.text().splitlines()
+    text, _, history = joint_file.text().partition("[[history]]")
+    assert 'section = "gear"' in history
+    before, after = TEXT.splitlines(), text.splitlines()
     assert [line for line in after if line not in before] == [
         "rated_torque_Nm = 90.0               # data sheet",
         "output_direction = 1",

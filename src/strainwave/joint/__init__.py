@@ -1,6 +1,11 @@
 """The joint file: the one place where what is known of a joint is kept."""
 
-from strainwave.joint.canonical import canonical_form, canonical_hash, section_hash
+from strainwave.joint.canonical import (
+    canonical_form,
+    canonical_hash,
+    canonical_json,
+    section_hash,
+)
 from strainwave.joint.document import JointFile
 from strainwave.joint.file import (
     build_section,
@@ -12,6 +17,7 @@ from strainwave.joint.file import (
 from strainwave.joint.gains import Gains, GainsWithoutGauge, GaugeSignal
 from strainwave.joint.gauges import Gauges, Rosette
 from strainwave.joint.gear import Gear
+from strainwave.joint.history import HistoryEntry
 from strainwave.joint.migrations import SCHEMA_VERSION
 from strainwave.joint.misalignment import Misalignment, MisalignmentTerm
 from strainwave.joint.model import SECTION_MODELS, SECTION_NAMES, Identity, Joint
@@ -45,6 +51,7 @@ __all__ = [
     "GaugeSignal",
     "Gauges",
     "Gear",
+    "HistoryEntry",
     "Identity",
     "Joint",
     "JointFile",
@@ -66,6 +73,7 @@ __all__ = [
     "build_section",
     "canonical_form",
     "canonical_hash",
+    "canonical_json",
     "conversion",
     "new_joint",
     "order_value",

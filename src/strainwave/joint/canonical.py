@@ -41,12 +41,33 @@ def canonical_number(value: float) -> str:
     return f"{sign}{digits[0]}{tail}e{point - 1:+d}"
 
 
-def _text(value: Any) -> str:
+def canonical_json(value: Any) -> str:
+    """Write plain values in the canonical form of RFC 8785.
+
+    Parameters
+    ----------
+    value : mapping, sequence, datetime, str, int or float
+        Keys are ASCII, numbers finite; a time is written as text, in UTC to the microsecond.
+
+    Returns
+    -------
+    str
+        JSON.
+
+    Raises
+    ------
+    TypeError
+        If a value is of another kind.
+    ValueError
+        If a number is not finite.
+    """
     if isinstance(value, dict):
         # The keys are ASCII, so that their order by code point is that of UTF-16.
-        return "{" + ",".join(f'"{key}":{_text(value[key])}' for key in sorted(value)) + "}"
+        return (
+            "{" + ",".join(f'"{key}":{canonical_json(value[key])}' for key in sorted(value)) + "}"
+        )
     if isinstance(value, list | tuple):
-        return "[" + ",".join(_text(item) for item in value) + "]"
+        return "[" + ",".join(canonical_json(item) for item in value) + "]"
     if isinstance(value, datetime):
         return f'"{value.astimezone(UTC):%Y-%m-%dT%H:%M:%S.%f}Z"'
     if isinstance(value, str):
@@ -68,7 +89,8 @@ def canonical_form(joint: Joint, *, include_provenance: bool = True) -> str:
     joint : Joint
         The joint.
     include_provenance : bool
-        False leaves the provenance of every section out, to compare the values alone.
+        False leaves the provenance of every section and the history out, to compare the values
+        alone.
 
     Returns
     -------
@@ -77,8 +99,9 @@ def canonical_form(joint: Joint, *, include_provenance: bool = True) -> str:
     """
     values = joint.model_dump(by_alias=True, exclude_none=True)
     if not include_provenance:
+        values.pop("history", None)
         values = {key: _without_provenance(part) for key, part in values.items()}
-    return _text(values)
+    return canonical_json(values)
 
 
 def canonical_hash(joint: Joint, *, include_provenance: bool = True) -> str:
@@ -92,7 +115,8 @@ def canonical_hash(joint: Joint, *, include_provenance: bool = True) -> str:
     joint : Joint
         The joint.
     include_provenance : bool
-        False leaves the provenance of every section out, to compare the values alone.
+        False leaves the provenance of every section and the history out, to compare the values
+        alone.
 
     Returns
     -------
@@ -135,4 +159,4 @@ def section_hash(joint: Joint, name: str, *, include_provenance: bool = True) ->
     values = section.model_dump(by_alias=True, exclude_none=True)
     if not include_provenance:
         values = _without_provenance(values)
-    return hashlib.sha256(_text(values).encode("utf-8")).hexdigest()
+    return hashlib.sha256(canonical_json(values).encode("utf-8")).hexdigest()

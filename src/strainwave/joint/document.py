@@ -11,6 +11,8 @@ from pydantic import ValidationError
 
 from strainwave.errors import InputError
 from strainwave.joint import editing
+from strainwave.joint.canonical import canonical_hash
+from strainwave.joint.history import HistoryEntry, history_entry
 from strainwave.joint.migrations import VERSION_KEY
 from strainwave.joint.model import SECTION_MODELS, SECTION_NAMES, Joint
 from strainwave.joint.problems import input_error
@@ -100,7 +102,8 @@ class JointFile:
         """Fill a section, or replace the one that is there.
 
         Comments and layout stay, but for those of values that disappear. Every value is written
-        out, defaults too. Where the result would not be a valid joint, nothing changes.
+        out, defaults too. A replaced section leaves an entry in ``[[history]]``. Where the result
+        would not be a valid joint, nothing changes.
 
         Parameters
         ----------
@@ -124,16 +127,23 @@ class JointFile:
             names = " or ".join(each.__name__ for each in expected)
             raise TypeError(f"section [{name}]: expected {names}, got {type(model).__name__}")
         section = model.model_copy(update={"provenance": provenance})
-        values = _plain_values(section)
-        self._change(name, values)
+        before = self._provenance_of(name)
+        if getattr(self._joint, name) == section:
+            return
+        entry = None
+        if before is not None:
+            entry = history_entry(name, "replaced", before, provenance, canonical_hash(self._joint))
+        self._change(name, _plain_values(section), entry)
 
-    def remove_section(self, name: str) -> None:
+    def remove_section(self, name: str, provenance: Provenance | None = None) -> None:
         """Take a section out, with its comments; no change where it is not there.
 
         Parameters
         ----------
         name : str
             Name of the section, one of `SECTION_NAMES`.
+        provenance : Provenance, optional
+            What the removal comes from, for the entry in ``[[history]]``; by hand without.
 
         Raises
         ------
@@ -141,13 +151,25 @@ class JointFile:
             If there is no section of that name, or another section needs it.
         """
         section_models(name, self._source)
-        self._change(name, None)
+        before = self._provenance_of(name)
+        if before is None:
+            return
+        by = Provenance.by_hand() if provenance is None else provenance
+        entry = history_entry(name, "removed", before, by, canonical_hash(self._joint))
+        self._change(name, None, entry)
 
-    def _change(self, name: str, values: dict[str, Any] | None) -> None:
+    def _provenance_of(self, name: str) -> Provenance | None:
+        section: Section | None = getattr(self._joint, name)
+        return None if section is None else section.provenance
+
+    def _change(self, name: str, values: dict[str, Any] | None, entry: HistoryEntry | None) -> None:
         wanted = self._joint.model_dump(by_alias=True, exclude_none=True)
         wanted.pop(name, None)
         if values is not None:
             wanted[name] = values
+        change = None if entry is None else entry.model_dump(exclude_none=True)
+        if change is not None:
+            wanted["history"] = [*wanted.get("history", ()), change]
         try:
             joint = Joint.model_validate(wanted)
         except ValidationError as error:
@@ -156,6 +178,8 @@ class JointFile:
             document = self.document
             try:
                 edit(document, name, values)
+                if change is not None:
+                    editing.append_entry(document, "history", change)
             except Exception:  # noqa: BLE001, S112 - see below
                 # Rare layouts (dotted keys, parts of a section apart) make the TOML library fail in
                 # many ways, or change the wrong place. Only what is read back right is kept.

@@ -134,3 +134,20 @@ def set_anew(document: tomlkit.TOMLDocument, name: str, values: Mapping[str, Any
     document.pop(name, None)
     if values is not None:
         document.append(name, new_table(values))
+
+
+def append_entry(document: tomlkit.TOMLDocument, name: str, values: Mapping[str, Any]) -> None:
+    """Add a table to a list of tables, at the end of both list and document.
+
+    Parameters
+    ----------
+    document : tomlkit.TOMLDocument
+        The document; changed in place.
+    name : str
+        Name of the list, which is begun where it is not there.
+    values : mapping
+        Plain values.
+    """
+    if name not in document:
+        document.append(name, tomlkit.aot())
+    document[name].append(new_table(values))

@@ -6,11 +6,12 @@ from typing import Annotated, Final
 
 from pydantic import Field, ValidationInfo, field_validator, model_validator
 
-from strainwave.joint.base import FilePart, Line, Lines
+from strainwave.joint.base import FilePart, Line, Lines, ListOf
 from strainwave.joint.fields import models_of
 from strainwave.joint.gains import Gains
 from strainwave.joint.gauges import Gauges
 from strainwave.joint.gear import Gear
+from strainwave.joint.history import HistoryEntry
 from strainwave.joint.misalignment import Misalignment
 from strainwave.joint.orders import needs_gear, repeated_order
 from strainwave.joint.oscillator_filter import OscillatorFilter
@@ -52,6 +53,11 @@ class Joint(FilePart):
         default=None, description="Torque that repeats with the output's angle"
     )
     temperature: Temperature | None = Field(default=None, description="Drift with temperature")
+    history: ListOf[HistoryEntry] | None = Field(
+        default=None,
+        min_length=1,
+        description="What was replaced or removed since the file began, in the order of the changes",
+    )
 
     @field_validator(
         "gear",

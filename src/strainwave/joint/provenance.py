@@ -31,7 +31,8 @@ def strainwave_version() -> str:
         return "0+unknown"
 
 
-def _in_utc(time: datetime) -> datetime:
+def in_utc(time: datetime) -> datetime:
+    """Return a time with time zone in UTC."""
     return time.astimezone(UTC)
 
 
@@ -49,7 +50,7 @@ class Provenance(FilePart):
     input_sha256: (
         Annotated[str, Field(pattern="^[0-9a-fA-F]{64}$"), AfterValidator(str.lower)] | None
     ) = Field(default=None, description="SHA-256 of the input file, 64 hexadecimal digits")
-    created: Annotated[AwareDatetime, AfterValidator(_in_utc)] = Field(
+    created: Annotated[AwareDatetime, AfterValidator(in_utc)] = Field(
         description="When the section was filled: date and time with time zone, kept in UTC"
     )
     version: Line = Field(description="Version of strainwave that filled the section")

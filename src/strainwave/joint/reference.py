@@ -18,6 +18,7 @@ from strainwave.joint.fields import (
     range_of,
     unit_of,
 )
+from strainwave.joint.history import HistoryEntry
 from strainwave.joint.model import SECTION_MODELS, Identity, Joint
 from strainwave.joint.provenance import Provenance
 from strainwave.joint.signals import Column
@@ -92,6 +93,7 @@ def field_tables() -> str:
             for title, inner in _lists(name, model):
                 lines += _table(title, inner)
     lines += _table("`[SECTION.provenance]`", Provenance)
+    lines += _table("`[[history]]`", HistoryEntry)
     return "\n".join(lines).rstrip() + "\n"
 
 

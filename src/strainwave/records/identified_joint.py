@@ -76,7 +76,7 @@ def fill_joint(
         sections["ripple_filter"] = build_section("ripple_filter", section, _SOURCE)
     # A filter that is there names its orders by the gear: the new one takes its place at last.
     if "ripple_filter" in sections and joint.ripple_filter is not None:
-        joint_file.remove_section("ripple_filter")
+        joint_file.remove_section("ripple_filter", provenance)
     for name, section_model in sections.items():
         joint_file.set_section(name, section_model, provenance)
     return tuple(sections)
