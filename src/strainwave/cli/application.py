@@ -15,6 +15,7 @@ from strainwave.cli.calibrate_plan import calibrate_plan
 from strainwave.cli.calibrate_thermal import calibrate_thermal
 from strainwave.cli.calibrate_torque import calibrate_torque_command
 from strainwave.cli.calibrate_tune import tune
+from strainwave.cli.certify import certify
 from strainwave.cli.demo import demo
 from strainwave.cli.design import design_app
 from strainwave.cli.fidelity import fidelity
@@ -22,6 +23,7 @@ from strainwave.cli.filter import filter_command
 from strainwave.cli.identify import identify_command
 from strainwave.cli.joint import joint_app
 from strainwave.cli.tare import tare_command
+from strainwave.cli.verify import verify
 from strainwave.errors import InputError
 
 if TYPE_CHECKING:
@@ -51,6 +53,8 @@ app.command(calibrate_app)
 app.command(design_app)
 app.command(tare_command, name="tare")
 app.command(joint_app)
+app.command(certify)
+app.command(verify)
 
 
 def main(arguments: Sequence[str] | None = None) -> None:

@@ -87,6 +87,17 @@ def check(path: Path, /, *, json: bool = False) -> None:
                     }
                     for name, section in present.items()
                 },
+                "history": [
+                    {
+                        "section": entry.section,
+                        "change": entry.change,
+                        "changed_at": entry.changed_at.isoformat(),
+                        "input": entry.input,
+                        "previous_input": entry.previous_input,
+                        "previous_hash": entry.previous_sha256,
+                    }
+                    for entry in joint.history or ()
+                ],
             }
         )
         return
@@ -102,3 +113,9 @@ def check(path: Path, /, *, json: bool = False) -> None:
             )
         else:
             console.print(f"  {name:<20} not known yet")
+    for entry in joint.history or ():
+        console.print(
+            f"  {entry.changed_at:%Y-%m-%d %H:%M} UTC: {entry.section} {entry.change}, from "
+            f"{entry.input} (before: {entry.previous_input})",
+            soft_wrap=True,
+        )

@@ -20,8 +20,8 @@ _POSITION = re.compile(
 _TWICE = ("Cannot overwrite a value", "Cannot declare", "Duplicate inline table key")
 
 
-def read_bytes(path: Path) -> bytes:
-    """Return the content of a joint file.
+def read_bytes(path: Path, kind: str = "joint file") -> bytes:
+    """Return the content of a joint file, or of another small file, which `kind` names.
 
     Raises
     ------
@@ -33,35 +33,35 @@ def read_bytes(path: Path) -> bytes:
         status = path.stat()
         if stat.S_ISDIR(status.st_mode):
             raise InputError(
-                f"{path}: it is a directory; expected a joint file, so name the file inside it"
+                f"{path}: it is a directory; expected a {kind}, so name the file inside it"
             )
         if not stat.S_ISREG(status.st_mode):
             raise InputError(
-                f"{path}: it is not a regular file but a device or pipe; expected a joint file, so "
+                f"{path}: it is not a regular file but a device or pipe; expected a {kind}, so "
                 "save the content in a file first"
             )
         if status.st_size > LARGEST_FILE_BYTES:
             raise InputError(
-                f"{path}: it has {status.st_size} bytes; expected a joint file, of at most "
+                f"{path}: it has {status.st_size} bytes; expected a {kind}, of at most "
                 f"{LARGEST_FILE_BYTES}, so check whether a recording was given in its place"
             )
         return path.read_bytes()
     except FileNotFoundError as error:
         raise InputError(
-            f"{path}: there is no such file; expected a joint file, so check the name or create it"
+            f"{path}: there is no such file; expected a {kind}, so check the name or create it"
         ) from error
     except (OSError, ValueError) as error:
         if isinstance(error, InputError):
             raise
         reason = (getattr(error, "strerror", None) or str(error)).lower()
         raise InputError(
-            f"{path}: it cannot be read ({reason}); expected a readable joint file, so check its "
+            f"{path}: it cannot be read ({reason}); expected a readable {kind}, so check its "
             "permissions and the path"
         ) from error
 
 
-def decode(content: bytes, source: str) -> str:
-    r"""Return the text of a joint file, with ``\n`` at the end of lines and no byte order mark.
+def decode(content: bytes, source: str, kind: str = "joint file") -> str:
+    r"""Return the text of a joint file or the like, with ``\n`` as line end and no byte order mark.
 
     Raises
     ------
@@ -74,14 +74,15 @@ def decode(content: bytes, source: str) -> str:
         line = content.count(b"\n", 0, error.start) + 1
         raise InputError(
             f"{source}, line {line}: it is not UTF-8 text (byte 0x{content[error.start]:02x} at "
-            f"position {error.start}); expected a joint file in TOML, so check whether another "
+            f"position {error.start}); expected a {kind} in TOML, so check whether another "
             "file was given or save it as UTF-8"
         ) from error
     text = text.replace("\r\n", "\n")
     if not text.strip():
+        parts = "schema_version and a section [joint]" if kind == "joint file" else "its keys"
         raise InputError(
-            f"{source}: it is empty; expected a joint file with schema_version and a section "
-            "[joint], so create it anew or take a copy"
+            f"{source}: it is empty; expected a {kind} with {parts}, so create it anew or take a "
+            "copy"
         )
     return text
 
