@@ -27,6 +27,8 @@ MEANINGS: Final = {
     "again. The result of the row before is held.",
     "sample_out_of_order": "No later than a row before it. The last good torque is held.",
     "time_not_finite": "No time. The last good torque is held.",
+    "gauges_insufficient": "Too few gauges are sound for any set of gains. The last good torque is "
+    "held.",
     "variance_limited": "The filter knew too little and was kept from forgetting more.",
     "covariance_reset": "The filter lost its footing and began anew.",
     "at_rest": "The motor hardly moves: the ripple is not learned, what is known of it is removed.",
@@ -34,6 +36,10 @@ MEANINGS: Final = {
     "order_above_nyquist": "An order turns by more than half a cycle from row to row: it cannot be "
     "followed there.",
     "temperature_out_of_range": "Outside the temperatures of the calibration.",
+    "gauge_lost": "A gauge has failed for good; the torque is made without it.",
+    "gauge_suspected": "A gauge reads wrong in this row; the torque is made without it.",
+    "gauges_disagree": "The gauges do not agree, and no single one explains it: several of them, or "
+    "the angle, may be wrong.",
 }
 
 #: Flags of rows that were not used though they hold something new, and why, after their number.
@@ -45,6 +51,7 @@ NOT_USED_BECAUSE: Final = {
     "temperature_not_finite": "without temperature",
     "sample_out_of_order": "out of order in time",
     "time_not_finite": "without time",
+    "gauges_insufficient": "with too few sound gauges",
 }
 
 

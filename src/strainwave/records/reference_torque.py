@@ -100,9 +100,10 @@ def read_reference_Nm(
         If there is no such column, it holds no numbers, or it is that of another signal.
     """
     # Read along with the torque, so that nobody compares a column with itself.
-    columns: dict[str, tuple[MappedColumn, ...]] = {REFERENCE: (column,)}
+    columns: dict[str, tuple[MappedColumn, ...]] = {}
     if "torque" in layout.columns:
         columns["torque"] = (layout.columns["torque"],)
+    columns[REFERENCE] = (column,)
     table = read_columns(recording, columns, _KEYS)
     torque_Nm = table.values[REFERENCE][:rows]
     usable = np.abs(torque_Nm) <= LARGEST_USABLE
