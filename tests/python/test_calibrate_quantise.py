@@ -9,9 +9,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from strainwave.calibrate.circuit import E24, E96, parse_circuit
 from strainwave.calibrate.fluctuation import compensation_conditions, equally_spaced_positions_rad
 from strainwave.calibrate.gains import compensating_gains
-from strainwave.calibrate.quantise import E24, E96, parse_circuit, quantise_gains
+from strainwave.calibrate.quantise import quantise_gains
 from strainwave.errors import InputError
 
 GODLER = compensation_conditions(
@@ -32,7 +33,9 @@ def test_series_are_those_of_the_standard() -> None:
     assert max(b / a for a, b in itertools.pairwise(E96)) < 1.031
 
 
-@pytest.mark.parametrize("text", ["potentiometer:64", "potentiometer:256:0.5:1.5", "E24", "E96"])
+@pytest.mark.parametrize(
+    "text", ["potentiometer:64", "potentiometer:256:0.5:1.5", "0.02", "E24", "E96"]
+)
 def test_no_worse_than_one_by_one_and_as_good_as_brute_force(text: str) -> None:
     circuit = parse_circuit(text)
     gains = compensating_gains(GODLER).gains
@@ -44,6 +47,51 @@ def test_no_worse_than_one_by_one_and_as_good_as_brute_force(text: str) -> None:
     if tried is not None:
         best = min(left(GODLER, each) for each in tried)
         assert left(GODLER, found.gains) <= best * 1.5 + 1e-12
+
+
+@settings(max_examples=50, deadline=None)
+@given(gains=st.lists(st.floats(-99, 99), min_size=1, max_size=9), step=st.floats(1e-4, 0.5))
+def test_steps_are_the_nearest(gains: list[float], step: float) -> None:
+    given_gains = np.array(gains)
+    found = parse_circuit(repr(step)).nearest(given_gains)
+    assert np.all(np.abs(found - given_gains) <= step / 2 * (1 + 1e-9) + 1e-9)
+
+
+@pytest.mark.parametrize("name", ["e24", "E96", "potentiometer:17:-3:2", "potentiometer:2"])
+@settings(max_examples=50, deadline=None)
+@given(
+    gains=st.lists(st.floats(-100, 100), min_size=1, max_size=5),
+    width=st.sampled_from([1, 2, 3, 5]),
+)
+def test_nearest_and_neighbours_against_all_values(
+    name: str, gains: list[float], width: int
+) -> None:
+    circuit = parse_circuit(name)
+    series = {"e24": E24, "E96": E96}.get(name)
+    everything = circuit.values
+    if series is not None:
+        # Input resistors against a feedback of 10 kOhm, from 100 Ohm to nearly 100 kOhm and above.
+        magnitudes = 10.0 / np.outer(10.0 ** np.arange(-1, 4), series).ravel()
+        everything = np.concatenate([magnitudes, -magnitudes])
+    given_gains = np.array(gains)
+    away = np.sort(np.abs(everything - given_gains[:, np.newaxis]), axis=1)
+    found = circuit.nearest(given_gains)
+    assert np.abs(found - given_gains) == pytest.approx(away[:, 0], abs=1e-12)
+    several = circuit.neighbours(given_gains, width)
+    assert several.shape == (len(gains), min(width, len(circuit.values)))
+    distances = np.abs(several - given_gains[:, np.newaxis])
+    assert distances[:, 0] == pytest.approx(away[:, 0], abs=1e-12)
+    # Resistors keep the gain's sign; of magnitudes these are the nearest then.
+    sized = np.abs(given_gains) if series is not None else given_gains
+    best = np.sort(np.abs(circuit.values - sized[:, np.newaxis]), axis=1)[:, :width]
+    assert distances == pytest.approx(best, abs=1e-12)
+
+
+@pytest.mark.parametrize("name", ["E24", "E96", "0.01", "potentiometer:256"])
+def test_values_of_a_circuit_stay(name: str) -> None:
+    circuit = parse_circuit(name)
+    assert np.array_equal(circuit.nearest(circuit.values), circuit.values)
+    assert np.isnan(circuit.nearest(np.array([np.nan]))[0])
 
 
 def test_finer_steps_leave_less() -> None:
@@ -93,6 +141,12 @@ def test_resistors_keep_the_sign() -> None:
         "potentiometer:9:0:x",
         "",
         "potentiometer:9:nan:2",
+        "E48",
+        "0",
+        "nan",
+        "-0.01",
+        "0.6",
+        "1e-5",
     ],
 )
 def test_what_is_no_circuit_is_refused(text: str) -> None:

@@ -210,9 +210,12 @@ def test_the_header_is_the_sheets(tmp_path: Path, call: Call) -> None:
         (("--steps", 1), "steps = 1: expected 2 to 1000"),
         (("--preloads", -1), "preloads = -1: expected 0 to 100"),
         (("--dwell", -1), "dwell_s = -1 s: expected 0 to 86400 s"),
-        (("--printable", "page.pdf"), "expected a file whose name ends with .html"),
-        (("--out", "sheet.xlsx"), "expected a file whose name ends with .csv"),
-        (("--out", "nowhere/sheet.csv"), "there is no such folder"),
+        (
+            ("--printable", "page.pdf"),
+            "--printable page.pdf: the name ends in '.pdf'; expected .html",
+        ),
+        (("--out", "sheet.xlsx"), "--out sheet.xlsx: the name ends in '.xlsx'; expected .csv"),
+        (("--out", "nowhere/sheet.csv"), "expected an existing folder"),
     ],
 )
 def test_bad_options(tmp_path: Path, call: Call, options, words: str) -> None:

@@ -414,8 +414,8 @@ BAD_OPTIONS = [
     (("--ratio", 0.5, "--configuration", "flexspline-fixed"), "--ratio 0.5: expected 1 to"),
     (("--configuration", "both-fixed"), "both-fixed"),
     (("--joint", "missing.toml"), "missing.toml"),
-    (("--figure", "figure.png"), "expected a file whose name ends with .svg"),
-    (("--figure", "nowhere/figure.svg"), "there is no such folder"),
+    (("--figure", "figure.gif"), "expected .svg or .pdf or .png"),
+    (("--figure", "nowhere/figure.svg"), "expected an existing folder"),
 ]
 
 

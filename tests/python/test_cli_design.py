@@ -199,14 +199,20 @@ def test_the_figure_is_the_same_for_the_same_data() -> None:
         ((*LAYOUT[2:], "--limit-FS", "0"), "limit_FS = 0.0 %FS"),
         ((*LAYOUT[2:], "--wave-FS", "1;2"), "wave_FS = '1;2': expected amplitudes in %FS"),
         ((*LAYOUT[2:], "--wave-FS", ""), "wave_FS = ''"),
-        ((*LAYOUT[2:], "--quantise", "E48"), "quantise = 'E48': expected E24, E96 or a step"),
+        ((*LAYOUT[2:], "--quantise", "E48"), "--quantise E48: expected potentiometer:256, "),
         ((*LAYOUT[2:], "--careless", "5"), "careless = '5': expected a position tolerance"),
         ((*LAYOUT[2:], "--careful", "0.5,-1"), "careful: amplitude tolerance = -1.0"),
         ((*LAYOUT[2:], "--compare", "--careful-gauges", "12"), "careful_gauges = 12"),
         ((*LAYOUT[2:], "--most-noise", "0"), "most_noise = 0.0: expected at least 1"),
         ((*LAYOUT[2:], "--seed", "-1"), "seed = -1"),
-        ((*LAYOUT[2:], "--out", "figure.png"), "--out figure.png: expected a file whose name"),
-        ((*LAYOUT[2:], "--out", "nowhere/f.svg"), "there is no folder nowhere"),
+        (
+            (*LAYOUT[2:], "--out", "figure.gif"),
+            "--out figure.gif: the name ends in '.gif'; expected .svg or .pdf or .png",
+        ),
+        (
+            (*LAYOUT[2:], "--out", "nowhere/f.svg"),
+            "nowhere/f.svg: it cannot be written (no such file or directory)",
+        ),
     ],
 )
 def test_bad_input_is_one_sentence(

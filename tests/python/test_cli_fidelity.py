@@ -117,8 +117,12 @@ def test_the_figure_is_written_and_the_same_again(tmp_path: Path, joint: Path, c
         ),
         (joint_text(signals(3), ripple(10)), (), "[gear]"),
         (joint_text(GEAR, signals(3), ripple(10)), (), "expected at least 5 Hz"),
-        (joint_text(GEAR, ripple(10)), ("--out", "f.png"), "ends with .svg"),
-        (joint_text(GEAR, ripple(10)), ("--out", "no/f.svg"), "there is no folder no"),
+        (joint_text(GEAR, ripple(10)), ("--out", "f.gif"), "expected .svg or .pdf or .png"),
+        (
+            joint_text(GEAR, ripple(10)),
+            ("--out", "no/f.svg"),
+            "no/f.svg: it cannot be written (no such file",
+        ),
     ],
 )
 def test_unusable_input_ends_with_2_and_one_sentence(

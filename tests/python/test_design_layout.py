@@ -10,13 +10,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from strainwave.calibrate.circuit import parse_circuit
 from strainwave.calibrate.fluctuation import compensation_conditions, equally_spaced_positions_rad
 from strainwave.calibrate.gains import compensating_gains
 from strainwave.design.case import LayoutCase, assumptions, remarks
 from strainwave.design.layout import LayoutStudy, study_layout
 from strainwave.design.many_gains import gains_of_layouts, noise_factors
 from strainwave.design.placement import Tolerances, Wave, draw_errors, gauge_signals
-from strainwave.design.quantisation import Quantisation
 from strainwave.errors import InputError
 
 TRIALS = 100_000
@@ -192,7 +192,7 @@ def test_potentiometer_steps() -> None:
         Tolerances(position_deg=1.0, amplitude=0.1),
         Wave((50.0,)),
         measurement_error_FS=0.0,
-        quantisation=Quantisation.of_text(str(step)),
+        circuit=parse_circuit(str(step)),
     )
     found = study_layout(case, 0.5, TRIALS).parts_FS
     assert found["up_to_N_solved"][95] < 1e-6
@@ -352,39 +352,6 @@ def test_a_wider_limit_is_met_by_no_fewer(
     assert narrow.untuned.met_limit <= wide.untuned.met_limit
 
 
-@settings(max_examples=50, deadline=None)
-@given(gains=st.lists(st.floats(-1e3, 1e3), min_size=1, max_size=9), step=st.floats(1e-6, 0.5))
-def test_steps_are_the_nearest(gains: list[float], step: float) -> None:
-    given_gains = np.array(gains)
-    found = Quantisation.of_text(repr(step)).apply(given_gains)
-    assert np.all(np.abs(found - given_gains) <= step / 2 * (1 + 1e-9) + 1e-9)
-
-
-#: IEC 60063, two digits; the series of three digits is geometric.
-E24 = "10 11 12 13 15 16 18 20 22 24 27 30 33 36 39 43 47 51 56 62 68 75 82 91"
-SERIES = {
-    "e24": np.array(E24.split(), dtype=float) / 10,
-    "E96": np.round(10 ** (np.arange(96) / 96), 2),
-}
-
-
-@pytest.mark.parametrize("name", list(SERIES))
-@settings(max_examples=50, deadline=None)
-@given(gain=st.floats(1e-3, 1e3), sign=st.sampled_from([-1.0, 1.0]))
-def test_resistors_of_a_series_are_the_nearest(name: str, gain: float, sign: float) -> None:
-    found = float(Quantisation.of_text(name).apply(np.array([sign * gain]))[0])
-    everything = np.outer(10.0 ** np.arange(-4, 5), SERIES[name]).ravel()
-    best = np.abs(np.log(everything / gain)).min()
-    assert abs(np.log(found * sign / gain)) == pytest.approx(best, abs=1e-9)
-
-
-@pytest.mark.parametrize("name", list(SERIES))
-def test_values_of_a_series_stay(name: str) -> None:
-    for decade in (0.01, 1.0, 100.0):
-        gains = decade * SERIES[name]
-        assert Quantisation.of_text(name).apply(gains) == pytest.approx(gains, rel=1e-12)
-
-
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
@@ -427,9 +394,6 @@ def test_a_study_that_cannot_be(arguments: dict[str, Any], words: str) -> None:
         lambda: Wave((0.0, 1.0)),
         lambda: Wave((1.0, -1.0)),
         lambda: Wave((1.0,), normal_strain_ratio=float("nan")),
-        lambda: Quantisation.of_text("E48"),
-        lambda: Quantisation.of_text("0"),
-        lambda: Quantisation.of_text("nan"),
         lambda: LayoutCase(5, 2, wave=Wave((1.0,))),
     ],
 )

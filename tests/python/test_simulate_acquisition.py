@@ -4,10 +4,10 @@ import math
 
 import numpy as np
 import pytest
-import strainwave._core as core
 from hypothesis import given
 from hypothesis import strategies as st
 
+import strainwave._core as core
 from strainwave.errors import ConfigurationError
 from strainwave.simulate import (
     Acquisition,

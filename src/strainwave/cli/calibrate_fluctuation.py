@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 import cyclopts
 
+from strainwave.cli.whole import Whole
+
 if TYPE_CHECKING:
     from strainwave.commissioning.fluctuation_result import FluctuationCalibration
 
@@ -16,7 +18,7 @@ def fluctuation(
     /,
     *,
     map_: Annotated[tuple[str, ...], cyclopts.Parameter(name="--map", show_default=False)],
-    harmonics: int,
+    harmonics: Whole,
     out: Path,
     ratio: str | None = None,
     configuration: Literal["flexspline-fixed", "circular-spline-fixed"] | None = None,
@@ -57,7 +59,7 @@ def fluctuation(
     torque_sensitivity : str
         Relative torque sensitivity of every gauge, by commas; equal without.
     quantise : str
-        What gains can be set to: potentiometer:STEPS[:LOW:HIGH], E24 or E96.
+        What gains can be set to: potentiometer:STEPS[:LOW:HIGH], E24, E96, or a step such as 0.001.
     fit_factor : bool
         Take the factor m from the recording.
     fit_delay : bool
@@ -71,15 +73,13 @@ def fluctuation(
     json : bool
         Print the result as JSON.
     """
-    from strainwave.cli.output import print_json, progress_console, result_console
+    from strainwave.cli.output import print_outcome
     from strainwave.cli.repeat import command_text
+    from strainwave.cli.reporting import check_figure
     from strainwave.commissioning.fluctuation import FluctuationOptions, calibrate_fluctuation
     from strainwave.records import parse_ratio
-    from strainwave.report.figure_file import check_figure_file, write_figure
-    from strainwave.report.figures_fluctuation import fluctuation_vectors_figure
 
-    if figure is not None:
-        check_figure_file(figure)
+    check_figure(figure, out, log, joint)
     options = FluctuationOptions(
         mapping=map_,
         harmonics=harmonics,
@@ -109,21 +109,23 @@ def fluctuation(
             "--out": out,
         },
     )
-    result = calibrate_fluctuation(log, out, options, joint_path=joint, command=command)
-    if figure is not None:
-        count = result.harmonics
-        write_figure(
-            fluctuation_vectors_figure(result.mean_phasors[:count], result.gains, "V"), figure
-        )
-    console = progress_console()
-    for warning in result.warnings:
-        console.print(f"strainwave: warning: {log}: {warning}", soft_wrap=True, markup=False)
-    if json:
-        print_json(result.as_dict())
-        return
-    lines = result_console()
-    for line in _table(result):
-        lines.print(line, soft_wrap=True, markup=False)
+
+    def draw(found: FluctuationCalibration) -> None:
+        if figure is not None:
+            _write_figure(found, figure)
+
+    result = calibrate_fluctuation(
+        log, out, options, joint_path=joint, command=command, before_writing=draw
+    )
+    print_outcome(result, _table, of=log, as_json=json)
+
+
+def _write_figure(result: FluctuationCalibration, figure: Path) -> None:
+    from strainwave.report.figure_file import write_figure
+    from strainwave.report.figures_fluctuation import fluctuation_vectors_figure
+
+    phasors = result.mean_phasors[: result.harmonics]
+    write_figure(fluctuation_vectors_figure(phasors, result.gains, "V"), figure)
 
 
 def _table(result: FluctuationCalibration) -> list[str]:

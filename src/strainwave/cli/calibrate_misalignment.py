@@ -86,7 +86,7 @@ def calibrate_misalignment(
     json : bool
         Print the result as JSON.
     """
-    from strainwave.cli.output import print_json, progress_console, result_console
+    from strainwave.cli.output import print_outcome
     from strainwave.cli.repeat import command_text
     from strainwave.commissioning.gravity import Payload
     from strainwave.commissioning.misalignment import FreeMotionTask, commission_misalignment
@@ -130,15 +130,7 @@ def calibrate_misalignment(
         rate_Hz=rate,
     )
     result = commission_misalignment(log, out, options, task, joint_path=joint, command=command)
-    console = progress_console()
-    for warning in result.warnings:
-        console.print(f"strainwave: warning: {log}: {warning}", soft_wrap=True, markup=False)
-    if json:
-        print_json(result.as_dict())
-        return
-    lines = result_console()
-    for line in _summary(result):
-        lines.print(line, soft_wrap=True, markup=False)
+    print_outcome(result, _summary, of=log, as_json=json)
 
 
 def _gravity(payload: object, axis: str | None, torque_Nm: float | None) -> Gravity | None:

@@ -63,14 +63,14 @@ def calibrate_plan(
         Print a summary as JSON.
     """
     from strainwave.atomic import write_atomically
-    from strainwave.cli.figures import check_figure
     from strainwave.cli.output import print_json, result_console
     from strainwave.commissioning.loading_plan import PlanOptions, make_plan, sheet_csv
     from strainwave.errors import InputError
+    from strainwave.records.checks import check_output
 
-    check_figure("--out", out, ending=".csv")
+    check_output(out, endings=(".csv",))
     if printable is not None:
-        check_figure("--printable", printable, ending=".html")
+        check_output(printable, option="--printable", endings=(".html",))
     if out.exists():
         raise InputError(
             f"--out {out}: there is a file already, and it may be a sheet somebody has filled in; "
@@ -89,11 +89,11 @@ def calibrate_plan(
             one_direction,
         )
     )
-    write_atomically(out, sheet_csv(plan).encode())
     if printable is not None:
         from strainwave.report.loading_sheet import loading_sheet_html
 
         write_atomically(printable, loading_sheet_html(plan, out.name).encode())
+    write_atomically(out, sheet_csv(plan).encode())
     if json:
         print_json(
             {

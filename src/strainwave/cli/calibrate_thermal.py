@@ -43,7 +43,7 @@ def calibrate_thermal(
     json : bool
         Print the result as JSON.
     """
-    from strainwave.cli.output import print_json, progress_console, result_console
+    from strainwave.cli.output import print_outcome
     from strainwave.cli.repeat import command_text
     from strainwave.commissioning.thermal import calibrate_temperature
 
@@ -64,15 +64,7 @@ def calibrate_thermal(
         reference_temperature_degC=reference_temperature,
         command=command,
     )
-    console = progress_console()
-    for warning in result.warnings:
-        console.print(f"strainwave: warning: {readings}: {warning}", soft_wrap=True, markup=False)
-    if json:
-        print_json(result.as_dict())
-        return
-    lines = result_console()
-    for line in _summary(result):
-        lines.print(line, soft_wrap=True, markup=False)
+    print_outcome(result, _summary, of=readings, as_json=json)
 
 
 def _summary(result: ThermalJoint) -> list[str]:

@@ -64,17 +64,16 @@ def calibrate_torque_command(
     through_origin : bool
         Fit lines through the origin, as Taghirad & Belanger do.
     figure : Path
-        A figure of residuals and gains: .svg.
+        A figure of residuals and gains: .svg, .pdf or .png.
     json : bool
         Print the result as JSON.
     """
-    from strainwave.cli.figures import check_figure
-    from strainwave.cli.output import print_json, progress_console, result_console
+    from strainwave.cli.output import print_outcome
     from strainwave.cli.repeat import command_text
+    from strainwave.cli.reporting import check_figure
     from strainwave.commissioning.torque_calibration import TorqueOptions, calibrate_torque
 
-    if figure is not None:
-        check_figure("--figure", figure, loads, out)
+    check_figure(figure, out, loads, joint)
     options = TorqueOptions(
         map_,
         rated_torque,
@@ -100,26 +99,22 @@ def calibrate_torque_command(
             "--out": out,
         },
     )
-    result = calibrate_torque(loads, out, options, joint_path=joint, command=command)
-    if figure is not None:
-        _write_figure(result, figure)
-    console = progress_console()
-    for warning in result.warnings:
-        console.print(f"strainwave: warning: {loads}: {warning}", soft_wrap=True, markup=False)
-    if json:
-        print_json(result.as_dict())
-        return
-    lines = result_console()
-    for line in _table(result):
-        lines.print(line, soft_wrap=True, markup=False)
+
+    def draw(found: TorqueCalibrated) -> None:
+        if figure is not None:
+            _write_figure(found, figure)
+
+    result = calibrate_torque(
+        loads, out, options, joint_path=joint, command=command, before_writing=draw
+    )
+    print_outcome(result, _table, of=loads, as_json=json)
 
 
 def _write_figure(result: TorqueCalibrated, figure: Path) -> None:
-    from strainwave.atomic import write_atomically
+    from strainwave.report.figure_file import write_figure
     from strainwave.report.figures_calibrate_torque import torque_calibration_figure
-    from strainwave.report.style import svg
 
-    write_atomically(figure, svg(torque_calibration_figure(result.fit)).encode())
+    write_figure(torque_calibration_figure(result.fit), figure)
 
 
 def _table(result: TorqueCalibrated) -> Iterator[str]:

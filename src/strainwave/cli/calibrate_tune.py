@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 import cyclopts
 
+from strainwave.cli.whole import Whole
+
 if TYPE_CHECKING:
     from strainwave.commissioning.tune_result import Tuning
 
@@ -15,7 +17,7 @@ def tune(
     *runs: Path,
     map_: Annotated[tuple[str, ...], cyclopts.Parameter(name="--map", show_default=False)],
     gauge_gains: tuple[str, ...],
-    harmonics: int = 1,
+    harmonics: Whole = 1,
     ratio: str | None = None,
     configuration: Literal["flexspline-fixed", "circular-spline-fixed"] | None = None,
     joint: Path | None = None,
@@ -57,7 +59,7 @@ def tune(
     json : bool
         Print the result as JSON.
     """
-    from strainwave.cli.output import print_json, progress_console, result_console
+    from strainwave.cli.output import print_outcome
     from strainwave.commissioning.tune import TuneOptions, guide_tuning
     from strainwave.errors import InputError
     from strainwave.records import parse_ratio
@@ -75,15 +77,7 @@ def tune(
         until=until,
     )
     result = guide_tuning(runs, options, joint_path=joint)
-    console = progress_console()
-    for warning in result.warnings:
-        console.print(f"strainwave: warning: {warning}", soft_wrap=True, markup=False)
-    if json:
-        print_json(result.as_dict())
-        return
-    lines = result_console()
-    for line in _lines(result, [str(run) for run in runs]):
-        lines.print(line, soft_wrap=True, markup=False)
+    print_outcome(result, lambda found: _lines(found, [str(run) for run in runs]), as_json=json)
 
 
 def _lines(result: Tuning, names: list[str]) -> list[str]:

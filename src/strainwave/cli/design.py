@@ -90,7 +90,7 @@ def layout(
     measurement_error_FS : float
         Standard deviation of the measured phasors, of sine and cosine each.
     quantise : str
-        Gains that the circuit has: a step as 0.001, E24 or E96.
+        Gains that the circuit has: potentiometer:STEPS[:LOW:HIGH], E24, E96, or a step such as 0.001.
     most_noise : float
         Noise factor above which a layout is refused.
     lost_gauge : bool
@@ -106,18 +106,19 @@ def layout(
     seed : int
         Seed of everything random.
     out : Path
-        A figure of the comparison: .svg.
+        A figure of the comparison: .svg, .pdf or .png.
     json : bool
         Print the result as JSON.
     """
+    from strainwave.calibrate.circuit import parse_circuit
     from strainwave.cli.design_result import as_dict
     from strainwave.cli.output import print_json, result_console
+    from strainwave.cli.reporting import check_figure
     from strainwave.design.case import LayoutCase
     from strainwave.design.checks import numbers_of_text
     from strainwave.design.comparison import Care, compare_gauge_counts
     from strainwave.design.layout import study_layout
     from strainwave.design.placement import Tolerances, Wave
-    from strainwave.design.quantisation import Quantisation
 
     amplitudes = Wave().amplitudes_FS
     if wave_FS is not None:
@@ -136,13 +137,12 @@ def layout(
         wave=Wave(amplitudes, normal_strain_ratio, wave_radius_exponent),
         radius_mm=radius_mm,
         measurement_error_FS=measurement_error_FS,
-        quantisation=None if quantise is None else Quantisation.of_text(quantise),
+        circuit=None if quantise is None else parse_circuit(quantise),
         most_noise=most_noise,
         lost_gauge=lost_gauge,
     )
     cares = Care.of_text("careless", careless), Care.of_text("careful", careful)
-    if out is not None:
-        _check_figure(out)
+    check_figure(out, None, option="--out")
     study = study_layout(case, limit_FS, trials, seed)
     comparison = None
     if compare or out is not None:
@@ -169,23 +169,11 @@ def layout(
         console.print(f"figure: {out}", soft_wrap=True, markup=False)
 
 
-def _check_figure(out: Path) -> None:
-    from strainwave.errors import InputError
-
-    if out.suffix.lower() != ".svg":
-        raise InputError(
-            f"--out {out}: expected a file whose name ends with .svg; choose such a name"
-        )
-    if not out.parent.is_dir():
-        raise InputError(f"--out {out}: there is no folder {out.parent}; expected one, so make it")
-
-
 def _write_figure(comparison: Comparison, out: Path) -> None:
-    from strainwave.atomic import write_atomically
+    from strainwave.report.figure_file import write_figure
     from strainwave.report.figures_layout import layout_figure
-    from strainwave.report.style import svg
 
-    write_atomically(out, svg(layout_figure(comparison)).encode())
+    write_figure(layout_figure(comparison), out)
 
 
 def _print_study(console: Console, study: LayoutStudy) -> None:

@@ -44,7 +44,7 @@ def as_dict(study: LayoutStudy, comparison: Comparison | None) -> dict[str, Any]
         "tolerances": case.tolerances.as_dict(),
         "wave_FS": list(case.wave.amplitudes_FS),
         "measurement_error_FS": case.measurement_error_FS,
-        "quantise": None if case.quantisation is None else case.quantisation.name,
+        "quantise": None if case.circuit is None else case.circuit.name,
         "sensitivities": [
             {
                 "error": each.error,

@@ -30,17 +30,17 @@ def fidelity(
     method : str
         Another method instead of the joint file's; an unknown name lists all.
     out : Path
-        A figure of all curves: .svg.
+        A figure of all curves: .svg, .pdf or .png.
     json : bool
         Print the result as JSON.
     """
     from strainwave.cli.output import print_json, progress_console, result_console
+    from strainwave.cli.reporting import check_figure
     from strainwave.errors import InputError
     from strainwave.fidelity import assess, subject_of_joint
     from strainwave.joint import read_joint
 
-    if out is not None:
-        _check_figure(out, joint)
+    check_figure(out, None, joint, option="--out")
     described = read_joint(joint).joint
     try:
         assessment = assess(subject_of_joint(described, method))
@@ -68,25 +68,11 @@ def fidelity(
         console.print(f"figure: {out}", soft_wrap=True, markup=False)
 
 
-def _check_figure(out: Path, joint: Path) -> None:
-    from strainwave.errors import InputError
-
-    if out.suffix.lower() != ".svg":
-        raise InputError(
-            f"--out {out}: expected a file whose name ends with .svg; choose such a name"
-        )
-    if not out.parent.is_dir():
-        raise InputError(f"--out {out}: there is no folder {out.parent}; expected one, so make it")
-    if out.exists() and joint.exists() and out.samefile(joint):
-        raise InputError(f"--out {out}: that is the joint file; expected another name, choose one")
-
-
 def _write_figure(assessment: Assessment, name: str, out: Path) -> None:
-    from strainwave.atomic import write_atomically
+    from strainwave.report.figure_file import write_figure
     from strainwave.report.figures_fidelity import fidelity_figure
-    from strainwave.report.style import svg
 
-    write_atomically(out, svg(fidelity_figure(assessment, name)).encode())
+    write_figure(fidelity_figure(assessment, name), out)
 
 
 def _torque_table(assessment: Assessment) -> Table:

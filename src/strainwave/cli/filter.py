@@ -67,7 +67,8 @@ def filter_command(
     from rich.progress import Progress as Bar
 
     from strainwave.cli.output import print_json, progress_console, result_console
-    from strainwave.cli.reporting import LINE_AFTER_LINE, check_report, command_line
+    from strainwave.cli.repeat import LINE_AFTER_LINE, command_line
+    from strainwave.cli.reporting import check_report
     from strainwave.records import Options, filter_log, parse_mapping, parse_ratio
 
     check_report(report, out, log, joint)
@@ -109,17 +110,18 @@ def filter_command(
             )
             progress("drawing", 0.8)
             given = {
+                "--map": map_,
                 "--angle-side": angle_side,
                 "--ratio": ratio,
                 "--joint": joint,
                 "--method": method,
                 "--rated-torque": rated_torque,
                 "--rate": rate,
-                "--absolute-angle": absolute_angle or None,
+                "--absolute-angle": absolute_angle,
                 "--out": out,
                 "--report": report,
             }
-            command = command_line("filter", log, map_, given, between=LINE_AFTER_LINE)
+            command = command_line(("filter", log), given, between=LINE_AFTER_LINE)
             write_recording_report(report, result, evidence, command, joint_path=joint)
     for warning in result.warnings:
         console.print(f"strainwave: warning: {log}: {warning}", soft_wrap=True, markup=False)

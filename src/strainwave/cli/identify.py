@@ -12,8 +12,6 @@ if TYPE_CHECKING:
     from strainwave.identify.torque_or_artefact import OrderVerdict
     from strainwave.records.identified_log import IdentifiedLog
 
-_LONGEST_COMMAND = 500
-
 
 def identify_command(
     log: Path,
@@ -61,7 +59,8 @@ def identify_command(
         Print the result as JSON.
     """
     from strainwave.cli.output import print_json, progress_console, result_console
-    from strainwave.cli.reporting import LINE_AFTER_LINE, check_report, command_line
+    from strainwave.cli.repeat import LINE_AFTER_LINE, command_line, command_text
+    from strainwave.cli.reporting import check_report
     from strainwave.records import Options, parse_ratio
     from strainwave.records.identifying import identify_log
     from strainwave.records.reference_torque import parse_with_reference
@@ -76,6 +75,7 @@ def identify_command(
         rate_Hz=rate,
     )
     given: dict[str, object] = {
+        "--map": map_,
         "--angle-side": angle_side,
         "--ratio": ratio,
         "--rated-torque": rated_torque,
@@ -84,15 +84,13 @@ def identify_command(
         "--reference": reference,
         "--out": out,
     }
-    command = command_line("identify", log, map_, given)
-    usable = command.isprintable() and len(command) <= _LONGEST_COMMAND
     result = identify_log(
         log,
         out,
         options,
         joint_path=joint,
         reference=reference_column,
-        command=command if usable else None,
+        command=command_text(("identify", log), given),
     )
     shown = {}
     if report is not None:
@@ -101,7 +99,7 @@ def identify_command(
 
         filtered, evidence = filter_as_identified(result, options)
         given["--report"] = report
-        command = command_line("identify", log, map_, given, between=LINE_AFTER_LINE)
+        command = command_line(("identify", log), given, between=LINE_AFTER_LINE)
         write_recording_report(
             report, filtered, evidence, command, joint_path=out, identified=result
         )

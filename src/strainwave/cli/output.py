@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import json
 import sys
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
 from rich.console import Console
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Iterable, Mapping, Sequence
 
 
 def print_json(result: Mapping[str, Any]) -> None:
@@ -43,3 +43,45 @@ def progress_console() -> Console:
         Writes to the standard error.
     """
     return Console(stderr=True, highlight=False)
+
+
+class Outcome(Protocol):
+    """What a command found."""
+
+    @property
+    def warnings(self) -> Sequence[str]:
+        """Sentences about what may be wrong."""
+
+    def as_dict(self) -> Mapping[str, Any]:
+        """Give plain values for a program."""
+
+
+_Found = TypeVar("_Found", bound=Outcome)
+
+
+def print_outcome(
+    found: _Found, table: Callable[[_Found], Iterable[str]], *, of: object = None, as_json: bool
+) -> None:
+    """Print what a command found: warnings beside it, and the result for a person or a program.
+
+    Parameters
+    ----------
+    found : Outcome
+        The result.
+    table : callable
+        Makes the lines that a person reads.
+    of : object, optional
+        What the warnings are about: the name of the file.
+    as_json : bool
+        Whether a program reads it.
+    """
+    console = progress_console()
+    about = "" if of is None else f"{of}: "
+    for warning in found.warnings:
+        console.print(f"strainwave: warning: {about}{warning}", soft_wrap=True, markup=False)
+    if as_json:
+        print_json(found.as_dict())
+        return
+    lines = result_console()
+    for line in table(found):
+        lines.print(line, soft_wrap=True, markup=False)

@@ -1,61 +1,15 @@
-"""What the commands with `--report` share: the place, and the command line that repeats them."""
+"""Where the page of `--report` and the picture of `--figure` may be written to."""
 
 from __future__ import annotations
 
 import os
-import shlex
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING
 
 from strainwave.errors import InputError
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Sequence
     from pathlib import Path
-
-#: Between the options of a command that is to be read: a shell takes the lines for one.
-LINE_AFTER_LINE: Final = " \\\n    "
-
-
-def command_line(
-    name: str,
-    log: Path,
-    mapping: tuple[str, ...],
-    options: Mapping[str, object],
-    *,
-    between: str = " ",
-) -> str:
-    """Write the command line that does the same again.
-
-    Parameters
-    ----------
-    name : str
-        The subcommand.
-    log : Path
-        The recording.
-    mapping : tuple of str
-        Values of ``--map``.
-    options : mapping
-        Further options by name; None where one was not given, True where it stands alone.
-    between : str
-        What stands between the options, such as `LINE_AFTER_LINE`.
-
-    Returns
-    -------
-    str
-        Quoted for a shell.
-    """
-    parts = [["strainwave", name, str(log)], *(["--map", text] for text in mapping)]
-    parts += [
-        [option] if value is True else [option, _text(value)]
-        for option, value in options.items()
-        if value is not None
-    ]
-    return between.join(shlex.join(words) for words in parts)
-
-
-def _text(value: object) -> str:
-    # A number as a person writes it: 100 and not 100.0.
-    return str(value).removesuffix(".0") if isinstance(value, float) else str(value)
 
 
 def check_report(report: Path | None, out: Path, *inputs: Path | None) -> None:
@@ -75,13 +29,50 @@ def check_report(report: Path | None, out: Path, *inputs: Path | None) -> None:
     InputError
         If the name, the folder or the permission is wrong, or the place is taken.
     """
+    if report is not None:
+        _check_beside(report, out, inputs, "--report", (".html",))
+
+
+def check_figure(
+    figure: Path | None, out: Path | None, *inputs: Path | None, option: str = "--figure"
+) -> None:
+    """Make sure that a figure can be written, before anything is computed.
+
+    Parameters
+    ----------
+    figure : Path or None
+        Where the figure goes; None where none was asked for.
+    out : Path or None
+        Where the result goes, if it goes to a file.
+    *inputs : Path or None
+        What is read.
+    option : str
+        The option that names the figure.
+
+    Raises
+    ------
+    InputError
+        If the name, the folder or the permission is wrong, or the place is taken.
+    """
+    if figure is not None:
+        # Drawing takes long to import; nobody waits for it who wants no figure.
+        from strainwave.report.figure_file import FORMATS
+
+        _check_beside(figure, out, inputs, option, FORMATS)
+
+
+def _check_beside(
+    path: Path,
+    out: Path | None,
+    inputs: Sequence[Path | None],
+    option: str,
+    endings: Sequence[str],
+) -> None:
     from strainwave.records.checks import check_output
 
-    if report is None:
-        return
-    check_output(report, *inputs, option="--report", endings=(".html",))
-    if os.path.realpath(report) == os.path.realpath(out):
+    check_output(path, *inputs, option=option, endings=endings)
+    if out is not None and os.path.realpath(path) == os.path.realpath(out):
         raise InputError(
-            f"--report {report}: it is the file of --out too; expected another one, so choose "
+            f"{option} {path}: it is the file of --out too; expected another one, so choose "
             "another name"
         )

@@ -59,7 +59,7 @@ def tare_command(
     json : bool
         Print the result as JSON.
     """
-    from strainwave.cli.output import print_json, progress_console, result_console
+    from strainwave.cli.output import print_outcome
     from strainwave.cli.repeat import command_text
     from strainwave.commissioning.gravity import Payload
     from strainwave.commissioning.tare import TareTask, tare_joint
@@ -81,15 +81,7 @@ def tare_command(
     )
     task = TareTask(payload, accuracy_fs)
     result = tare_joint(poses, out, map_, task, joint_path=joint, command=command)
-    console = progress_console()
-    for warning in result.warnings:
-        console.print(f"strainwave: warning: {poses}: {warning}", soft_wrap=True, markup=False)
-    if json:
-        print_json(result.as_dict())
-        return
-    lines = result_console()
-    for line in _summary(result):
-        lines.print(line, soft_wrap=True, markup=False)
+    print_outcome(result, _summary, of=poses, as_json=json)
 
 
 def _summary(result: TaredJoint) -> list[str]:

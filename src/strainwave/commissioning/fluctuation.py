@@ -13,11 +13,12 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from strainwave.calibrate.angle_from_gauges import AMBIGUITY, calibrate_without_angle
+from strainwave.calibrate.circuit import parse_circuit
 from strainwave.calibrate.fluctuation_run import FluctuationRun, fit_run
 from strainwave.calibrate.gain_solution import OverGrid, solve_gains
 from strainwave.calibrate.gains import MOST_NOISE
 from strainwave.calibrate.lost_gauge import gains_without_each
-from strainwave.calibrate.quantise import parse_circuit, quantise_gains
+from strainwave.calibrate.quantise import quantise_gains
 from strainwave.calibrate.wave_timing import delayed_in_stretches
 from strainwave.commissioning.conditions import Condition, conditions_of
 from strainwave.commissioning.fluctuation_result import FluctuationCalibration
@@ -37,7 +38,7 @@ from strainwave.records.joint_output import check_joint_output
 from strainwave.records.mapping import MapKeys
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
     from fractions import Fraction
 
     from numpy.typing import NDArray
@@ -81,7 +82,7 @@ class FluctuationOptions:
     torque_sensitivity : str or None
         Sensitivities by commas.
     quantise : str or None
-        A circuit, see `strainwave.calibrate.quantise.parse_circuit`.
+        A circuit, see `strainwave.calibrate.circuit.parse_circuit`.
     fit_factor, fit_delay : bool
         Whether factor m and the delay of the gauges are taken from the recording.
     over_grid : {"sum", "worst"}
@@ -109,6 +110,7 @@ def calibrate_fluctuation(
     *,
     joint_path: Path | None = None,
     command: str | None = None,
+    before_writing: Callable[[FluctuationCalibration], None] | None = None,
 ) -> FluctuationCalibration:
     """Find gains that cancel the fluctuation, and write them to ``[gains]`` of a joint file.
 
@@ -125,6 +127,9 @@ def calibrate_fluctuation(
         A joint file to start from.
     command : str, optional
         The command line, for the provenance.
+    before_writing : callable, optional
+        Called with the result just before the joint file is written, such as for its figure: where
+        that fails, nothing is written.
 
     Returns
     -------
@@ -199,6 +204,8 @@ def calibrate_fluctuation(
     )
     section = gains_section(result, sensitivities if has_sensitivities else None)
     joint_file.set_section("gains", section, Provenance.of_file(log, command=command))
+    if before_writing is not None:
+        before_writing(result)
     write_joint(joint_file, out)
     return result
 

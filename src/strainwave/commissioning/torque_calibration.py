@@ -19,7 +19,7 @@ from strainwave.records.joint_output import check_joint_output
 from strainwave.records.voltages import codes_to_volts
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from strainwave.joint import Joint, JointFile
 
@@ -80,6 +80,7 @@ def calibrate_torque(
     *,
     joint_path: Path | None = None,
     command: str | None = None,
+    before_writing: Callable[[TorqueCalibrated], None] | None = None,
 ) -> TorqueCalibrated:
     """Calibrate torque from a table of loads, and write it to a joint file.
 
@@ -96,6 +97,9 @@ def calibrate_torque(
         A joint file to start from; its other sections stay.
     command : str, optional
         The command line, for the provenance.
+    before_writing : callable, optional
+        Called with the result just before the joint file is written, such as for its figure: where
+        that fails, nothing is written.
 
     Returns
     -------
@@ -131,8 +135,11 @@ def calibrate_torque(
         raise InputError(f"{path}: {error}") from error
     provenance = Provenance.of_file(path, command=command)
     sections = _fill(joint_file, fit, options, provenance, makes_gear=makes_gear)
+    result = TorqueCalibrated(path, out, fit, sections, warnings_of(table, fit, fit_options))
+    if before_writing is not None:
+        before_writing(result)
     write_joint(joint_file, out)
-    return TorqueCalibrated(path, out, fit, sections, warnings_of(table, fit, fit_options))
+    return result
 
 
 def _check(options: TorqueOptions) -> None:

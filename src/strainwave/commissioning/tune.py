@@ -11,8 +11,9 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from strainwave.calibrate.circuit import Circuit, parse_circuit
 from strainwave.calibrate.fluctuation_run import FluctuationRun, fit_run
-from strainwave.calibrate.quantise import Circuit, parse_circuit, quantise_gains
+from strainwave.calibrate.quantise import quantise_gains
 from strainwave.calibrate.tuning import Advice, Turn, advise, gauge_phasors, trial_turn
 from strainwave.commissioning.gauge_table import read_gauges, require_signals
 from strainwave.commissioning.told import (

@@ -173,8 +173,8 @@ class Batch:
         }
 
     def _in_circuit(self, gains: FloatArray) -> FloatArray:
-        quantisation = self.case.quantisation
-        return gains if quantisation is None else quantisation.apply(gains)
+        circuit = self.case.circuit
+        return gains if circuit is None else circuit.nearest(gains)
 
     def _left(self, gains: FloatArray) -> FloatArray:
         """Amplitude left in each harmonic, % of the calibrated full scale."""

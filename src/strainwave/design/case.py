@@ -12,7 +12,7 @@ from strainwave.design.placement import Tolerances, Wave
 from strainwave.errors import ConfigurationError
 
 if TYPE_CHECKING:
-    from strainwave.design.quantisation import Quantisation
+    from strainwave.calibrate.circuit import Circuit
 
 FEWEST_GAUGES: Final = 2
 MOST_GAUGES: Final = 9
@@ -38,7 +38,7 @@ class LayoutCase:
     measurement_error_FS : float
         Standard deviation of what the calibration run measures of every gauge's harmonics, of sine
         and cosine each, in % of the gauge's signal at rated torque.
-    quantisation : Quantisation, optional
+    circuit : Circuit, optional
         Gains that the circuit can have; any without.
     most_noise : float
         Noise factor above which the solver refuses a layout, as `compensating_gains` does.
@@ -57,7 +57,7 @@ class LayoutCase:
     wave: Wave = field(default_factory=Wave)
     radius_mm: float = 22.0
     measurement_error_FS: float = 0.01
-    quantisation: Quantisation | None = None
+    circuit: Circuit | None = None
     most_noise: float = MOST_NOISE
     lost_gauge: bool = False
 

@@ -6,7 +6,6 @@ import io
 from typing import TYPE_CHECKING, Final
 
 from strainwave.atomic import write_atomically
-from strainwave.errors import InputError
 from strainwave.report.style import figure_style, svg
 
 if TYPE_CHECKING:
@@ -14,34 +13,8 @@ if TYPE_CHECKING:
 
     from matplotlib.figure import Figure
 
+#: Endings that the name of a figure may have.
 FORMATS: Final = (".svg", ".pdf", ".png")
-
-
-def check_figure_file(path: Path, option: str = "--figure") -> None:
-    """Make sure that a figure can be written, before the work.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-    option : str
-        Name of the option, for messages.
-
-    Raises
-    ------
-    InputError
-        If its name ends in nothing known, or its folder is missing.
-    """
-    if path.suffix.lower() not in FORMATS:
-        raise InputError(
-            f"{option} {path}: the name ends in {path.suffix!r}; expected {', '.join(FORMATS)}, so "
-            "choose another name"
-        )
-    if path.is_dir() or not path.resolve().parent.is_dir():
-        raise InputError(
-            f"{option} {path}: there is no such folder, or it is one itself; expected a file in an "
-            "existing folder, so choose another place"
-        )
 
 
 def write_figure(figure: Figure, path: Path) -> None:
