@@ -35,26 +35,36 @@ UNUSABLE_INPUT: Final = 2
 app = cyclopts.App(
     name="strainwave",
     help="Clean joint torque from the strain gauges inside a strain wave gear.",
-    help_format="plaintext",
+    help_format="markdown",
     default_parameter=cyclopts.Parameter(negative=()),
     version=version("strainwave"),
 )
+# In the order of `--help`, which is that of the work: a look, filtering, building a sensor.
 app.command(demo)
+app.command(identify_command, name="identify")
 app.command(filter_command, name="filter")
 app.command(fidelity)
-app.command(identify_command, name="identify")
-calibrate_app.command(calibrate_torque_command, name="torque")
-calibrate_app.command(calibrate_plan, name="plan")
-calibrate_app.command(calibrate_misalignment, name="misalignment")
-calibrate_app.command(calibrate_thermal, name="thermal")
+app.command(design_app)
 calibrate_app.command(fluctuation)
 calibrate_app.command(tune)
+calibrate_app.command(calibrate_plan, name="plan")
+calibrate_app.command(calibrate_torque_command, name="torque")
+calibrate_app.command(calibrate_thermal, name="thermal")
+calibrate_app.command(calibrate_misalignment, name="misalignment")
 app.command(calibrate_app)
-app.command(design_app)
 app.command(tare_command, name="tare")
 app.command(joint_app)
 app.command(certify)
 app.command(verify)
+
+
+def _list_as_registered(commands: cyclopts.App) -> None:
+    for place, name in enumerate(name for name in commands if not name.startswith("-")):
+        commands[name].sort_key = place
+
+
+for _commands in (app, calibrate_app, joint_app):
+    _list_as_registered(_commands)
 
 
 def main(arguments: Sequence[str] | None = None) -> None:

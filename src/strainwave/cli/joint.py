@@ -6,11 +6,7 @@ from pathlib import Path
 
 import cyclopts
 
-joint_app = cyclopts.App(
-    name="joint",
-    help="Make a joint file, or check one.",
-    help_format="plaintext",
-)
+joint_app = cyclopts.App(name="joint", help="Make a joint file, or check one.")
 
 
 @joint_app.command
