@@ -22,6 +22,7 @@ from helpers.gauge_logs import (
 from helpers.log_files import command, write_csv, write_parquet
 from strainwave.calibrate.fluctuation import equally_spaced_positions_rad
 from strainwave.calibrate.fluctuation_run import fit_run
+from strainwave.errors import InputError
 from strainwave.joint import build_section, new_joint, read_joint, write_joint
 from strainwave.joint.provenance import Provenance
 from strainwave.simulate.presets.godler2000 import godler2000
@@ -436,6 +437,7 @@ BASE = {
         ({"--map": "gauges=g1_V+g2_V+g3_V", "--fit-delay": None}, "no angle is mapped"),
         ({"--harmonics": "0"}, "--harmonics 0: expected a whole number"),
         ({"--harmonics": "17"}, "--harmonics 17: expected a whole number"),
+        ({"--harmonics": "1.5"}, "--harmonics 1.5: expected a whole number"),
         ({"--harmonics": "one"}, "harmonics"),
         ({"--ratio": "0.5"}, "--ratio 0.5: expected"),
         ({"--configuration": None}, "configuration"),
@@ -452,6 +454,7 @@ BASE = {
         ({"--over-grid": "best"}, "over-grid"),
         ({"--figure": "vectors.gif"}, "--figure vectors.gif: the name ends in"),
         ({"--figure": "nowhere/vectors.svg"}, "existing folder"),
+        ({"--joint": "old.svg", "--figure": "old.svg"}, "it is the file that is read"),
         ({"--fit-delay": None}, "expected at least 1.5 turns"),
         ({"--fit-factor": None}, "expected at least 1.5 turns"),
     ],
@@ -470,6 +473,22 @@ def test_what_cannot_be_used_is_refused(
     assert words in ended.err
     assert "Traceback" not in ended.err
     assert not (tmp_path / "joint.toml").exists()
+
+
+def test_a_figure_that_fails_leaves_no_joint_file(
+    tmp_path: Path, call: Call, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fail(*_given: object) -> None:
+        raise InputError("no room for the figure")
+
+    monkeypatch.setattr("strainwave.report.figure_file.write_figure", fail)
+    write_run(tmp_path / "run.parquet", turns_of(station_of(3), 1.0, 3))
+    ended = call(
+        *("calibrate", "fluctuation", tmp_path / "run.parquet", "--map", mapping_of(3)),
+        *("--harmonics", 1, "--out", tmp_path / "joint.toml", "--figure", tmp_path / "f.svg"),
+    )
+    assert (ended.code, ended.err) == (2, "strainwave: no room for the figure")
+    assert [path.name for path in tmp_path.iterdir()] == ["run.parquet"]
 
 
 def test_options_that_belong_together(tmp_path: Path, call: Call) -> None:

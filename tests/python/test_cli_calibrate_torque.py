@@ -11,6 +11,7 @@ import pytest
 from helpers.joint_sections import PROVENANCE, gauges, gear
 from helpers.load_tables import FULL_SCALE_NM, GAIN, MAP, Truth, experiments, series, table
 from helpers.log_files import command, write_csv, write_parquet
+from strainwave.errors import InputError
 from strainwave.joint import new_joint, read_joint, write_joint
 from strainwave.simulate.presets.taghirad1999 import calibration_experiments
 
@@ -131,6 +132,13 @@ def test_everything_is_told_and_written(tmp_path: Path, call: Call) -> None:
     joint = read_joint(tmp_path / "loads.toml").joint
     assert joint.torque_calibration is not None
     assert joint.temperature is not None
+    told = found["temperature"]
+    assert joint.temperature.zero_drift_standard_uncertainty_V_per_K == pytest.approx(
+        told["zero_standard_error_V_per_K"], rel=1e-12
+    )
+    assert joint.temperature.gain_drift_standard_uncertainty_per_K == pytest.approx(
+        told["gain_standard_error_per_K"], rel=1e-12
+    )
     written = joint.torque_calibration
     assert list(written.linearisation) == found["linearisation"]["coefficients"]
     assert written.hysteresis_percent_of_rated_torque == found["hysteresis_FS"]
@@ -401,6 +409,7 @@ def test_bad_tables(tmp_path: Path, call: Call, changed, mapping, words: str) ->
 BAD_OPTIONS = [
     (("--rated-torque", 0), "--rated-torque 0: expected 1e-06 to 1e+07 Nm"),
     (("--rated-torque", "nan"), "--rated-torque = nan: expected a number"),
+    (("--harmonics", 2.5), "--harmonics 2.5: expected a whole number"),
     (("--harmonics", 0), "--harmonics = 0: expected a whole number of at least 1"),
     (("--harmonics", 101), "--harmonics 101: expected at most 100"),
     (("--load-uncertainty", -1), "--load-uncertainty -1: expected 0 to 100 %"),
@@ -426,6 +435,19 @@ def test_bad_options(tmp_path: Path, call: Call, options, words: str) -> None:
     assert ended.code == 2
     assert words in ended.err
     assert sorted(path.name for path in tmp_path.iterdir()) == ["loads.csv"]
+
+
+def test_a_figure_that_fails_leaves_no_joint_file(
+    tmp_path: Path, call: Call, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fail(*_given: object) -> None:
+        raise InputError("no room for the figure")
+
+    monkeypatch.setattr("strainwave.report.figure_file.write_figure", fail)
+    loads = write_csv(tmp_path / "loads.csv", _columns())
+    ended = _run(call, loads, "--figure", tmp_path / "f.svg")
+    assert (ended.code, ended.err) == (2, "strainwave: no room for the figure")
+    assert [path.name for path in tmp_path.iterdir()] == ["loads.csv"]
 
 
 def test_files_that_are_there_are_kept(tmp_path: Path, call: Call) -> None:

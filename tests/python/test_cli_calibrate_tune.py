@@ -170,6 +170,7 @@ def test_gauges_on_a_line_cannot_be_tuned() -> None:
         ({"--gauge-gains": "0,0,0"}, "all gains 0"),
         ({"--gauge-gains": None}, "gauge-gains"),
         ({"--harmonics": "0"}, "--harmonics 0: expected"),
+        ({"--harmonics": "1.5"}, "--harmonics 1.5: expected a whole number"),
         ({"--until": "-1"}, "--until -1: expected"),
         ({"--until": "nan"}, "--until nan: expected"),
         ({"--potentiometer": "1"}, "--potentiometer potentiometer:1: expected"),

@@ -1,4 +1,8 @@
-"""Drift of gain and zero over the temperatures of loading experiments."""
+"""Drift of gain and zero over the temperatures of loading experiments.
+
+Positions and mountings move gain and zero of a whole experiment at once, so that an experiment is one
+point here. `strainwave.calibrate.thermal` fits single readings, which only drift apart by temperature.
+"""
 
 from __future__ import annotations
 

@@ -128,8 +128,7 @@ def commission_misalignment(
     check, checked_on, why_not = _check(run, fit, gravity, task, options, joint, zero_rad)
     section = build_section("misalignment", _section(fit, zero_rad), "what was found")
     joint_file.set_section("misalignment", section, Provenance.of_file(path, command=command))
-    write_joint(joint_file, out)
-    return CommissionedMisalignment(
+    result = CommissionedMisalignment(
         path,
         out,
         fit,
@@ -139,6 +138,8 @@ def commission_misalignment(
         _gravity_word(gravity),
         (*remarks, *remarks_on(runs, fit, check, layout, joint), *why_not),
     )
+    write_joint(joint_file, out)
+    return result
 
 
 def _knowledge(task: FreeMotionTask) -> GravityKnowledge:

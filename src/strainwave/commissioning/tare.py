@@ -150,8 +150,7 @@ def tare_joint(
     joint_file.set_section(
         "torque_calibration", changed, _provenance(path, section.provenance, command)
     )
-    write_joint(joint_file, out)
-    return TaredJoint(
+    result = TaredJoint(
         path,
         out,
         poses,
@@ -165,6 +164,8 @@ def tare_joint(
         source,
         remarks_on(joint, table, poses, found, source),
     )
+    write_joint(joint_file, out)
+    return result
 
 
 def _read(path: Path, mapping: Iterable[str], joint: Joint) -> Table:

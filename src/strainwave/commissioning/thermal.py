@@ -163,9 +163,8 @@ def calibrate_temperature(
         "what was found",
     )
     joint_file.set_section("temperature", section, Provenance.of_file(path, command=command))
-    write_joint(joint_file, out)
     load = table.values.get("load")
-    return ThermalJoint(
+    result = ThermalJoint(
         path,
         out,
         fit,
@@ -174,6 +173,8 @@ def calibrate_temperature(
         _in_percent(fit, joint),
         tuple(_warnings(fit, joint, load, source)),
     )
+    write_joint(joint_file, out)
+    return result
 
 
 def _reference(asked: float | None, joint: Joint, temperature: NDArray[np.float64]) -> float | None:

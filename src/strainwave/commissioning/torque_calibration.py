@@ -217,7 +217,9 @@ def _fill(
         values = {
             "reference_temperature_degC": drift.reference_degC,
             "zero_drift_V_per_K": drift.zero_V_per_K if drift.zero_is_told else 0.0,
+            "zero_drift_standard_uncertainty_V_per_K": drift.zero_standard_error_V_per_K,
             "gain_drift_per_K": drift.gain_per_K if drift.gain_is_told else 0.0,
+            "gain_drift_standard_uncertainty_per_K": drift.gain_standard_error_per_K,
             "lowest_temperature_degC": drift.lowest_degC,
             "highest_temperature_degC": drift.highest_degC,
         }
