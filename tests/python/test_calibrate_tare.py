@@ -19,7 +19,8 @@ from helpers.static_poses import (
     station_poses,
     weight_Nm,
 )
-from strainwave.calibrate.tare import Poses, SensorScatter, Weight, group_poses, tare
+from strainwave.calibrate.poses import Poses, group_poses
+from strainwave.calibrate.tare import SensorScatter, Weight, tare
 from strainwave.errors import InputError
 
 HORIZONTAL_RAD = float(np.radians(HORIZONTAL_DEG))

@@ -117,6 +117,15 @@ def test_the_comparison_is_printed_and_drawn(call: Call, tmp_path: Path) -> None
         assert [each["gauges"] for each in result[name]["layouts"]] == list(range(2, 10))
 
 
+@pytest.mark.parametrize(("ending", "start"), [("pdf", b"%PDF"), ("png", b"\x89PNG")])
+def test_the_figure_is_of_the_kind_that_its_name_says(
+    call: Call, tmp_path: Path, ending: str, start: bytes
+) -> None:
+    out = tmp_path / f"layout.{ending}"
+    assert call(*LAYOUT, "--trials", "100", "--out", out).code == 0
+    assert out.read_bytes().startswith(start)
+
+
 def test_more_care_more_gauges_and_tuning_help() -> None:
     found = compare_gauge_counts(LayoutCase(3, 2), 0.5, trials=2000)
     for few, many in zip(found.careless_studies, found.careful_studies, strict=True):

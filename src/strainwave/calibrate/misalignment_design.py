@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Final, Literal
 
 import numpy as np
 
-from strainwave.calibrate.free_motion import Blocks, FreeMotion
+from strainwave.calibrate.free_motion import FreeMotion
+from strainwave.calibrate.free_motion_blocks import Blocks
 from strainwave.errors import InputError
 
 if TYPE_CHECKING:

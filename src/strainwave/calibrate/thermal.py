@@ -15,6 +15,7 @@ from scipy.signal import savgol_filter
 
 from strainwave.arrays import contiguous
 from strainwave.calibrate.checks import require_finite
+from strainwave.calibrate.warming_and_cooling import warming_less_cooling
 from strainwave.errors import InputError
 
 if TYPE_CHECKING:
@@ -26,11 +27,6 @@ LEAST_SPARE_ROWS: Final = 2
 LEAST_RANGE_K: Final = 1.0
 #: Loads have to span this share of their largest to tell the gain from the zero.
 _LEAST_LOAD_SPREAD: Final = 0.1
-#: A row in which the temperature moves by more than this share of its range is a step of a branch.
-_STEP: Final = 0.02
-#: Rows of one branch in a part of the range, and parts of it, to compare warming with cooling.
-_LEAST_BRANCH_ROWS: Final = 2
-_BRANCH_PARTS: Final = 6
 #: Rows of a log from which a lag can be told, and the share of it over which its rate is taken.
 LEAST_LOG_ROWS: Final = 50
 _RATE_SHARE: Final = 0.04
@@ -161,7 +157,7 @@ def fit_thermal(
         lag_s=lag,
         lag_standard_uncertainty_s=lag_u,
         lag_is_used=lag_is_used,
-        hysteresis_V=_hysteresis(data.temperature, fit.left),
+        hysteresis_V=warming_less_cooling(data.temperature, fit.left),
         curvature_V=abs(float(bent.values[-1])),
         curvature_is_clear=bool(abs(bent.values[-1]) > CLEAR * bent.uncertainties[-1]),
         residual_rms_V=float(np.sqrt(np.mean(fit.left**2))),
@@ -326,38 +322,3 @@ def _rate(data: _Readings) -> NDArray[np.float64] | None:
     rate = np.asarray(degrees / seconds)
     # One steady slope shifts the temperature by a constant, which is a zero.
     return rate if float(np.std(rate)) > 0.1 * float(np.abs(rate).max()) else None
-
-
-def _hysteresis(temperature: NDArray[np.float64], left: NDArray[np.float64]) -> float | None:
-    """Compare what is left in parts of the range, warming against cooling."""
-    low, high = float(temperature.min()), float(temperature.max())
-    turns = _branches(temperature, 0.1 * (high - low))
-    part = np.minimum((temperature - low) / (high - low) * _BRANCH_PARTS, _BRANCH_PARTS - 1)
-    differences = []
-    for number in range(_BRANCH_PARTS):
-        here = np.floor(part) == number
-        sides = [left[here & (turns == sense)] for sense in (1, -1)]
-        if min(map(len, sides)) >= _LEAST_BRANCH_ROWS or (
-            len(left) < LEAST_LOG_ROWS and min(map(len, sides)) >= 1
-        ):
-            differences.append(abs(float(sides[0].mean() - sides[1].mean())))
-    return max(differences) if differences else None
-
-
-def _branches(temperature: NDArray[np.float64], least_K: float) -> NDArray[np.int64]:
-    """Tell warming (1) from cooling (-1): a branch ends where the temperature comes back by so much."""
-    senses = np.zeros(len(temperature), np.int64)
-    start = extreme = 0
-    sense = 0
-    for row, value in enumerate(temperature.tolist()):
-        if sense == 0:
-            if abs(value - temperature[0]) > least_K:
-                sense, extreme = (1 if value > temperature[0] else -1), row
-            continue
-        if sense * (value - temperature[extreme]) > 0:
-            extreme = row
-        elif sense * (temperature[extreme] - value) > least_K:
-            senses[start : extreme + 1] = sense
-            start, sense, extreme = extreme + 1, -sense, row
-    senses[start:] = sense
-    return senses

@@ -39,7 +39,8 @@ app = cyclopts.App(
     default_parameter=cyclopts.Parameter(negative=()),
     version=version("strainwave"),
 )
-# In the order of `--help`, which is that of the work: a look, filtering, building a sensor.
+# In the order of `--help`, which is that of the work: a look, filtering, building a sensor,
+# handing it over.
 app.command(demo)
 app.command(identify_command, name="identify")
 app.command(filter_command, name="filter")

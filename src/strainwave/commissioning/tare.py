@@ -8,13 +8,8 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from strainwave.calibrate.tare import (
-    Poses,
-    SensorScatter,
-    Weight,
-    group_poses,
-    tare,
-)
+from strainwave.calibrate.poses import Poses, group_poses
+from strainwave.calibrate.tare import SensorScatter, Weight, tare
 from strainwave.commissioning.tare_result import (
     STANDARD_ACCURACY_FS,
     TaredJoint,

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from strainwave.calibrate.tare import CONFIDENCE, Poses, Tare
+from strainwave.calibrate.poses import Poses
+from strainwave.calibrate.tare import CONFIDENCE, Tare
 from strainwave.records.identified_log import measured_text
 
 if TYPE_CHECKING:
