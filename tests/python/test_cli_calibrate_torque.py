@@ -115,7 +115,7 @@ def test_everything_is_told_and_written(tmp_path: Path, call: Call) -> None:
     loads = table(tmp_path / "loads.csv", experiments(truth, 6, 4, temperatures=degrees))
     picture = tmp_path / "loads.svg"
     mapping = (*FULL_MAP, "temperature=T_degC")
-    gear = ("--rated-torque", 40, "--ratio", 100, "--configuration", "circular-spline-fixed")
+    gear = ("--rated-torque", 40, "--ratio", "201/2", "--configuration", "circular-spline-fixed")
     ended = _run(call, loads, *gear, "--figure", picture, "--json", mapping=mapping)
     assert ended.code == 0
     found = ended.result
@@ -132,6 +132,8 @@ def test_everything_is_told_and_written(tmp_path: Path, call: Call) -> None:
     joint = read_joint(tmp_path / "loads.toml").joint
     assert joint.torque_calibration is not None
     assert joint.temperature is not None
+    assert joint.gear is not None
+    assert joint.gear.ratio == 100.5
     told = found["temperature"]
     assert joint.temperature.zero_drift_standard_uncertainty_V_per_K == pytest.approx(
         told["zero_standard_error_V_per_K"], rel=1e-12
@@ -420,7 +422,10 @@ BAD_OPTIONS = [
         ("--ratio", 100, "--configuration", "flexspline-fixed"),
         "without --rated-torque; expected all three",
     ),
-    (("--ratio", 0.5, "--configuration", "flexspline-fixed"), "--ratio 0.5: expected 1 to"),
+    (
+        ("--ratio", 0.5, "--configuration", "flexspline-fixed"),
+        "--ratio 0.5: expected motor turns per output turn",
+    ),
     (("--configuration", "both-fixed"), "both-fixed"),
     (("--joint", "missing.toml"), "missing.toml"),
     (("--figure", "figure.gif"), "expected .svg or .pdf or .png"),

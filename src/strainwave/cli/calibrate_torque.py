@@ -24,7 +24,7 @@ def calibrate_torque_command(
     map_: Annotated[tuple[str, ...], cyclopts.Parameter(name="--map", show_default=False)] = (),
     joint: Path | None = None,
     rated_torque: float | None = None,
-    ratio: float | None = None,
+    ratio: str | None = None,
     configuration: Literal["flexspline-fixed", "circular-spline-fixed"] | None = None,
     harmonics: Whole = 2,
     load_uncertainty: float | None = None,
@@ -51,8 +51,8 @@ def calibrate_torque_command(
         A joint file to start from; other sections stay as they are there.
     rated_torque : float
         Full scale, Nm, where the joint file does not say it.
-    ratio : float
-        Ratio of the gear, for [gear] in a new joint file.
+    ratio : str
+        Motor turns per output turn, for [gear] in a new joint file.
     configuration : {"flexspline-fixed", "circular-spline-fixed"}
         The part that is fixed, for [gear] in a new joint file.
     harmonics : int
@@ -72,12 +72,13 @@ def calibrate_torque_command(
     from strainwave.cli.repeat import command_text
     from strainwave.cli.reporting import check_figure
     from strainwave.commissioning.torque_calibration import TorqueOptions, calibrate_torque
+    from strainwave.records import parse_ratio
 
     check_figure(figure, out, loads, joint)
     options = TorqueOptions(
         map_,
         rated_torque,
-        ratio,
+        None if ratio is None else float(parse_ratio(ratio)),
         configuration,
         harmonics,
         through_origin,

@@ -33,8 +33,8 @@ from strainwave.commissioning.gauge_table import (
 from strainwave.commissioning.told import GearConfiguration, parse_sensitivities, told_factor
 from strainwave.commissioning.wave_angle import Timing, found_timing
 from strainwave.errors import InputError
-from strainwave.joint import Provenance, new_joint, read_joint, write_joint
-from strainwave.records.joint_output import check_joint_output
+from strainwave.joint import Provenance, write_joint
+from strainwave.records.joint_output import check_joint_output, started_joint
 from strainwave.records.mapping import MapKeys
 
 if TYPE_CHECKING:
@@ -145,7 +145,7 @@ def calibrate_fluctuation(
     check_joint_output(out, log, joint_path)
     _check_harmonics(options.harmonics)
     circuit = None if options.quantise is None else parse_circuit(options.quantise)
-    joint_file = new_joint(log.stem or "joint") if joint_path is None else read_joint(joint_path)
+    joint_file = started_joint(log, joint_path)
     joint = None if joint_path is None else joint_file.joint
     table = read_gauges(log, options.mapping, FLUCTUATION_KEYS, joint)
     volts = table.values["gauges"]

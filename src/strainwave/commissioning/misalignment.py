@@ -23,11 +23,11 @@ from strainwave.commissioning.misalignment_result import (
     remarks_on,
 )
 from strainwave.errors import InputError
-from strainwave.joint import Provenance, build_section, new_joint, read_joint, write_joint
+from strainwave.joint import Provenance, build_section, write_joint
 from strainwave.records.checks import check_survey
 from strainwave.records.columns import find_columns
 from strainwave.records.findings import warnings_of
-from strainwave.records.joint_output import check_joint_output
+from strainwave.records.joint_output import check_joint_output, started_joint
 from strainwave.records.layout import build_layout
 from strainwave.records.method_setting import choose_wave_factor, joint_as_asked, read_excerpt
 from strainwave.records.opening import open_recording
@@ -112,7 +112,7 @@ def commission_misalignment(
         If something that was given cannot be used, or nothing can be told; nothing is written then.
     """
     check_joint_output(out, path, joint_path)
-    joint_file = new_joint(path.stem or "joint") if joint_path is None else read_joint(joint_path)
+    joint_file = started_joint(path, joint_path)
     joint = None if joint_path is None else joint_file.joint
     gravity = _knowledge(task)
     run, layout, remarks = _read_run(path, options, joint, 0.0)

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any, Final
 
 from strainwave.calibrate.thermal import ThermalFit, fit_thermal
 from strainwave.errors import InputError
-from strainwave.joint import Provenance, build_section, new_joint, read_joint, write_joint
-from strainwave.records.joint_output import check_joint_output
+from strainwave.joint import Provenance, build_section, write_joint
+from strainwave.records.joint_output import check_joint_output, started_joint
 from strainwave.records.mapping import MapKeys
 from strainwave.records.table import read_table
 from strainwave.records.voltages import codes_to_volts
@@ -121,7 +121,7 @@ def calibrate_temperature(
         If something that was given cannot be used; nothing is written then.
     """
     check_joint_output(out, path, joint_path)
-    joint_file = new_joint(path.stem or "joint") if joint_path is None else read_joint(joint_path)
+    joint_file = started_joint(path, joint_path)
     joint = joint_file.joint
     table = read_table(
         path,

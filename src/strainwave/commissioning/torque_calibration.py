@@ -14,8 +14,8 @@ from strainwave.commissioning.torque_result import TorqueCalibrated, TorqueFit
 from strainwave.commissioning.torque_table import read_load_table
 from strainwave.commissioning.torque_warnings import warnings_of
 from strainwave.errors import InputError
-from strainwave.joint import Provenance, build_section, new_joint, read_joint, write_joint
-from strainwave.records.joint_output import check_joint_output
+from strainwave.joint import Provenance, build_section, write_joint
+from strainwave.records.joint_output import check_joint_output, started_joint
 from strainwave.records.voltages import codes_to_volts
 
 if TYPE_CHECKING:
@@ -114,7 +114,7 @@ def calibrate_torque(
     path, out = Path(path), Path(out)
     check_joint_output(out, path, joint_path)
     _check(options)
-    joint_file = new_joint(path.stem or "joint") if joint_path is None else read_joint(joint_path)
+    joint_file = started_joint(path, joint_path)
     joint = joint_file.joint
     rated_Nm = _rated_torque_Nm(options, joint, joint_path)
     makes_gear = joint.gear is None and options.ratio is not None

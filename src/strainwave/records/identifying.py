@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from strainwave.identify.judgement import judge_ripple
 from strainwave.identify.recording import identify_ripple
 from strainwave.identify.torque_or_artefact import UNDECIDABLE
-from strainwave.joint import Provenance, new_joint, read_joint, write_joint
+from strainwave.joint import Provenance, write_joint
 from strainwave.joint.orders import order_text
 from strainwave.joint.ripple_filter import RippleFilter
 from strainwave.records.checks import check_survey
@@ -19,7 +19,7 @@ from strainwave.records.findings import warnings_of
 from strainwave.records.gearing import gearing_of_both, gearing_of_motor, gearing_of_output
 from strainwave.records.identified_joint import columns_of, fill_joint
 from strainwave.records.identified_log import Gearing, IdentifiedLog
-from strainwave.records.joint_output import check_joint_output
+from strainwave.records.joint_output import check_joint_output, started_joint
 from strainwave.records.layout import build_layout
 from strainwave.records.method_setting import MOST_ROWS, read_excerpt
 from strainwave.records.opening import open_recording
@@ -86,7 +86,7 @@ def identify_log(
     """
     path, out, options = Path(path), Path(out), options or Options()
     check_joint_output(out, path, joint_path)
-    joint_file = new_joint(path.stem or "joint") if joint_path is None else read_joint(joint_path)
+    joint_file = started_joint(path, joint_path)
     joint = None if joint_path is None else joint_file.joint
     recording = open_recording(path)
     reading, gearing, columns = _read(recording, options, joint, progress)

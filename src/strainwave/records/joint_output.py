@@ -1,4 +1,4 @@
-"""Where a joint file may be written to."""
+"""Where a joint file may be written to, and what it starts from."""
 
 from __future__ import annotations
 
@@ -6,9 +6,12 @@ import os
 from typing import TYPE_CHECKING
 
 from strainwave.errors import InputError
+from strainwave.joint import new_joint, read_joint
 
 if TYPE_CHECKING:
     from pathlib import Path
+
+    from strainwave.joint import JointFile
 
 
 def check_joint_output(out: Path, path: Path, joint_path: Path | None) -> None:
@@ -46,3 +49,26 @@ def check_joint_output(out: Path, path: Path, joint_path: Path | None) -> None:
             f"--out {out}: there is a file already; expected a new name, or the file of --joint, so "
             "choose another name or start from that file with --joint"
         )
+
+
+def started_joint(path: Path, joint_path: Path | None) -> JointFile:
+    """Read the joint file that is started from, or make one that is named after the input.
+
+    Parameters
+    ----------
+    path : Path
+        What is read.
+    joint_path : Path or None
+        The joint file that is started from.
+
+    Returns
+    -------
+    JointFile
+        To be filled and written.
+
+    Raises
+    ------
+    InputError
+        If the joint file cannot be read.
+    """
+    return new_joint(path.stem or "joint") if joint_path is None else read_joint(joint_path)
