@@ -5,5 +5,6 @@ from __future__ import annotations
 import cyclopts
 
 calibrate_app = cyclopts.App(
-    name="calibrate", help="Find gains, torque calibration and drift of a joint's gauges."
+    name="calibrate",
+    help="From measurements to the joint file: gains, torque, temperature and misalignment.",
 )

@@ -40,8 +40,9 @@ def filter_command(
         Where the result goes: .csv or .parquet, one row for each row of the recording.
     map_ : tuple of str
         Which columns are what: key=column[:unit] pairs by commas, with the keys time, angle, speed,
-        motor-angle (beside the output's angle), torque and expected-torque. Units are s, rad, rad/s
-        and Nm without; a minus before the column turns its sign. May be given several times.
+        motor-angle (beside the output's angle), torque and expected-torque, or in place of torque
+        gauges (with plus signs between them) and temperature. Units are s, rad, rad/s, Nm, V and
+        degC without; a minus before the column turns its sign. May be given several times.
     angle_side : {"motor", "output"}
         The side that angle or speed was measured on.
     ratio : str
