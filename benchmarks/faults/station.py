@@ -19,8 +19,8 @@ from strainwave.calibrate.gains import compensating_gains
 from strainwave.calibrate.gauge_watch import (
     consistency_limits,
     fluctuation_rms,
-    gains_without_gauges,
 )
+from strainwave.calibrate.lost_gauge import gains_without_each
 from strainwave.joint import (
     Gains,
     GainsWithoutGauge,
@@ -198,6 +198,7 @@ def commissioned_joint(station: Station, seed: int) -> Joint:
     )
     conditions = compensation_conditions(fit.amplitudes, fit.phase_errors_rad, placed)
     solved = compensating_gains(conditions)
+    without, _ = gains_without_each([conditions[: 2 * HARMONICS_WITHOUT]], np.ones(GAUGES))
     limits = _limits(station, seed, fit.offsets, conditions)
     phases = fit.phase_errors_rad + 2 * np.outer(np.arange(1, HARMONICS + 1), placed)
     standing = station.rotate(constant_speed(0.0, 0.0), 2.0, seed + 1)
@@ -238,9 +239,9 @@ def commissioned_joint(station: Station, seed: int) -> Joint:
                     gauge=each.gauge,
                     gains=tuple(each.gains.tolist()),
                     noise_factor=each.noise_factor,
-                    residual_fluctuation_V=each.residual_fluctuation,
+                    residual_fluctuation_V=fluctuation_rms(conditions, each.gains),
                 )
-                for each in gains_without_gauges(conditions, harmonics=HARMONICS_WITHOUT)
+                for each in without
             ),
             gauge_signals=tuple(
                 GaugeSignal(

@@ -162,24 +162,24 @@ def test_gains_without_each_gauge() -> None:
     rng = np.random.default_rng(14)
     phasors = phasors_of(rng, 6, 2)
     torque = rng.uniform(0.9, 1.1, 6)
-    sets, said = gains_without_each([run_of(phasors)], (1, 2), torque, most_noise=1e6)
+    sets, said = gains_without_each([run_of(phasors).conditions((1, 2))], torque, most_noise=1e6)
     assert [each.gauge for each in sets] == [1, 2, 3, 4, 5, 6]
     assert said == ()
     for each in sets:
         assert each.gains[each.gauge - 1] == 0
         # What is calibrated once holds for every set.
         assert each.gains @ torque == pytest.approx(torque.sum())
-        assert np.all(each.residual_after < 1e-7 * np.abs(each.gains).max())
+        assert np.all(np.abs(phasors @ each.gains) < 1e-7 * np.abs(each.gains).max())
         assert each.noise_factor >= 1
-    assert gains_without_each([run_of(phasors[:, :5])], (1, 2), np.ones(5)) == ((), ())
-    assert gains_without_each([run_of(phasors[:1, :3])], (1,), np.ones(3)) == ((), ())
+    assert gains_without_each([run_of(phasors[:, :5]).conditions((1, 2))], np.ones(5)) == ((), ())
+    assert gains_without_each([run_of(phasors[:1, :3]).conditions((1,))], np.ones(3)) == ((), ())
 
 
 def test_a_gauge_that_cannot_be_lost_is_said() -> None:
     # Without gauge 4 the others lie on one line.
     phasors = np.array([[1.0, 1.0, 1.1, 1j - 1]])
     phasors[0, 3] = -1.0 + 0.5j
-    sets, said = gains_without_each([run_of(phasors)], (1,), np.ones(4))
+    sets, said = gains_without_each([run_of(phasors).conditions((1,))], np.ones(4))
     assert 4 not in [each.gauge for each in sets]
     assert any(words.startswith("Without gauge 4 no gains are stored:") for words in said)
 

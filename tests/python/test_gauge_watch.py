@@ -16,10 +16,12 @@ from strainwave.calibrate.fluctuation import compensation_conditions, equally_sp
 from strainwave.calibrate.gauge_watch import (
     consistency_limits,
     fluctuation_rms,
-    gains_without_gauges,
     signal_directions,
     stuck_samples,
+    white_noise,
 )
+from strainwave.calibrate.lost_gauge import GainsWithoutGauge as Found
+from strainwave.calibrate.lost_gauge import gains_without_each
 from strainwave.configuration import gauge_monitor_of
 from strainwave.errors import ConfigurationError, InputError
 from strainwave.joint import Gains, GainsWithoutGauge, GaugeSignal, Identity, Joint
@@ -33,37 +35,44 @@ def ideal_conditions(count: int, harmonics: int = 1) -> FloatArray:
     return compensation_conditions(amplitudes, np.zeros(shape), equally_spaced_positions_rad(count))
 
 
+def found_without(conditions: FloatArray, sensitivities: Any = None) -> tuple[Found, ...]:
+    count = conditions.shape[1]
+    torque = np.ones(count) if sensitivities is None else np.asarray(sensitivities)
+    return gains_without_each([conditions], torque)[0]
+
+
 def test_five_ideal_gauges_without_one_have_the_gains_of_the_closed_form() -> None:
     # The null space of the first harmonic is spanned by 1 and the second harmonic; of that, what
     # is 0 at gauge k is 1 - cos(2 (phi_j - phi_k)), and it is the only one symmetric about it.
     phases = 2 * equally_spaced_positions_rad(5)
-    found = gains_without_gauges(ideal_conditions(5))
+    found = found_without(ideal_conditions(5))
     assert [each.gauge for each in found] == [1, 2, 3, 4, 5]
     for each in found:
         expected = 1 - np.cos(2 * (phases - phases[each.gauge - 1]))
         assert each.gains == pytest.approx(expected, abs=1e-7)
-        # M' sum(g^2) / (sum g)^2 with sum 5 and sum of squares 5 (1 + 1/2).
-        assert each.noise_factor == pytest.approx(4 * 7.5 / 25, rel=1e-7)
-        assert each.residual_fluctuation < 1e-8
+        # M sum(g^2) / (sum g)^2 with sum 5 and sum of squares 5 (1 + 1/2).
+        assert each.noise_factor == pytest.approx(5 * 7.5 / 25, rel=1e-7)
+        assert fluctuation_rms(ideal_conditions(5), each.gains) < 1e-8
 
 
-@pytest.mark.parametrize(("count", "harmonics"), [(3, 1), (5, 2), (6, 3), (1, 1)])
+@pytest.mark.parametrize(("count", "harmonics"), [(3, 1), (5, 2), (6, 3), (2, 1)])
 def test_too_few_gauges_have_no_gains_without_one(count: int, harmonics: int) -> None:
-    assert gains_without_gauges(ideal_conditions(count, harmonics)) == ()
+    assert found_without(ideal_conditions(count, harmonics)) == ()
 
 
 def test_a_harmonic_that_need_not_be_cancelled_is_part_of_the_residual() -> None:
     conditions = ideal_conditions(5, 2)
-    found = gains_without_gauges(conditions, harmonics=1)
+    found = found_without(conditions[:2])
     assert len(found) == 5
     for each in found:
         # Godler's eq. (8) turned into a signal over a whole turn, and its rms.
         angle = np.linspace(0, np.pi, 1000, endpoint=False)
         sines = [np.sin(2 * angle), np.cos(2 * angle), np.sin(4 * angle), np.cos(4 * angle)]
         signal = np.stack(sines).T @ (conditions @ each.gains)
-        assert each.residual_fluctuation == pytest.approx(np.sqrt(np.mean(signal**2)), rel=1e-9)
+        left = fluctuation_rms(conditions, each.gains)
+        assert left == pytest.approx(np.sqrt(np.mean(signal**2)), rel=1e-9)
         # The second harmonic of gains 1 - cos(2 (phi_j - phi_k)) is 5/2 of a 20th.
-        assert each.residual_fluctuation == pytest.approx(2.5 / 20 / math.sqrt(2), rel=1e-6)
+        assert left == pytest.approx(2.5 / 20 / math.sqrt(2), rel=1e-6)
 
 
 @given(
@@ -79,7 +88,7 @@ def test_gains_without_a_gauge_cancel_the_wave_and_keep_the_torque(
     conditions = compensation_conditions(
         amplitudes, np.array([errors[:count]]), equally_spaced_positions_rad(count)
     )
-    for each in gains_without_gauges(conditions, sensitivities):
+    for each in found_without(conditions, sensitivities):
         assert each.gains[each.gauge - 1] == 0
         assert sensitivities @ each.gains == pytest.approx(np.sum(sensitivities), rel=1e-9)
         assert np.abs(conditions @ each.gains).max() < 1e-7 * np.abs(each.gains).max()
@@ -88,18 +97,46 @@ def test_gains_without_a_gauge_cancel_the_wave_and_keep_the_torque(
 def test_a_gauge_that_cannot_be_missed_has_no_entry() -> None:
     # Of four gauges three see the same wave: without the fourth only gains of sum 0 cancel it.
     conditions = compensation_conditions(np.ones((1, 4)), np.zeros((1, 4)), [0, 0, 0, math.pi / 2])
-    assert 4 not in [each.gauge for each in gains_without_gauges(conditions)]
+    assert 4 not in [each.gauge for each in found_without(conditions)]
 
 
-def test_more_harmonics_than_were_fitted_are_refused() -> None:
-    with pytest.raises(InputError, match="harmonics = 2: expected at most the 1"):
-        gains_without_gauges(ideal_conditions(5), harmonics=2)
-
-
-@pytest.mark.parametrize("values", [[1.0] * 4, [1.0, 1.0, 1.0, 1.0, math.nan], [1.0] * 4 + [0.0]])
+@pytest.mark.parametrize("values", [[1.0] * 4, [1.0, 1.0, 1.0, 1.0, math.nan], [0.0] * 5])
 def test_sensitivities_that_cannot_be_are_refused(values: list[float]) -> None:
     with pytest.raises(InputError, match="torque_sensitivities"):
-        gains_without_gauges(ideal_conditions(5), values)
+        consistency_limits(
+            np.zeros((10, 5)),
+            np.zeros(10),
+            zeros=np.zeros(5),
+            conditions=ideal_conditions(5),
+            torque_sensitivities=values,
+        )
+
+
+def test_conditions_of_other_gauges_are_refused() -> None:
+    with pytest.raises(InputError, match=r"conditions has the shape \(2, 5\): expected a column"):
+        gains_without_each([ideal_conditions(5)], np.ones(4))
+
+
+def test_a_torque_signal_that_is_told_is_kept() -> None:
+    sets, said = gains_without_each([ideal_conditions(5)], np.ones(5), torque_signal=4.2)
+    assert said == ()
+    assert [float(np.sum(each.gains)) for each in sets] == pytest.approx([4.2] * 5)
+
+
+def test_noise_is_found_beside_a_slow_signal_and_under_the_rounding() -> None:
+    generator = np.random.default_rng(4)
+    slow = np.sin(0.02 * np.arange(20_000))
+    for sigma, step in ((1e-3, 3e-4), (1e-3, 1e-3), (1e-3, 2.5e-3)):
+        noisy = slow + sigma * generator.standard_normal(len(slow))
+        rounded = step * np.round(noisy / step)
+        found = white_noise(rounded[:, np.newaxis], step=step)
+        assert found == pytest.approx([sigma], rel=0.05)
+    # A tenth of a step: in motion rounding looks like noise, at rest the code stands.
+    hidden = np.round(50 * slow + 0.1 * generator.standard_normal(len(slow)))
+    assert np.isnan(white_noise(hidden[:, np.newaxis], step=1.0)).all()
+    assert np.isnan(white_noise(np.zeros((3, 2)))).all()
+    with pytest.raises(InputError, match="signals"):
+        white_noise(np.full((10, 2), np.nan))
 
 
 def test_stuck_samples_bound_what_noise_does() -> None:
@@ -145,6 +182,17 @@ def test_limits_hold_what_sound_gauges_do_with_their_margin() -> None:
     assert 0.02 < limits.limit < 0.035
 
 
+def test_without_loads_there_is_one_limit_and_no_growth() -> None:
+    angle = np.linspace(0, 300, 30_000)
+    signals = sound_signals(np.zeros(len(angle)), angle, 0.1, 0.001)
+    limits = consistency_limits(
+        signals, angle, zeros=np.zeros(5), conditions=ideal_conditions(5), is_loaded=False
+    )
+    assert limits.share is None
+    # Noise in four directions: chi of 4 degrees, the largest of 30000 below 6.5 sigma.
+    assert 1.5 * 0.004 < limits.limit < 1.5 * 0.0065
+
+
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
@@ -178,7 +226,7 @@ def five_gauge_joint(**changes: Any) -> Joint:
                 gains=tuple(each.gains.tolist()),
                 residual_fluctuation_V=0.1 * each.gauge,
             )
-            for each in gains_without_gauges(conditions)
+            for each in found_without(conditions)
         ),
         "gauge_signals": tuple(
             GaugeSignal(
@@ -252,6 +300,7 @@ def test_watch_is_what_the_joint_says() -> None:
     [
         ({}, True, True),
         ({"consistency_limit_V": None}, False, True),
+        ({"consistency_limit_share": None}, False, True),  # under load sound gauges part
         ({"gauge_signals": None}, False, True),
         ({"noise_V": None}, True, False),
         ({"noise_V": 1e-5}, True, False),  # a thirtieth of a step: codes stand by themselves
@@ -308,7 +357,7 @@ def test_a_loss_is_kept_by_copies_and_forgotten_when_cleared() -> None:
 
 def test_five_gauges_that_cancel_two_harmonics_have_none_to_spare() -> None:
     # M - 1 = 4 < 2 N + 1 = 5: no gains are stored, and the loss makes the torque invalid.
-    assert gains_without_gauges(ideal_conditions(5, 2)) == ()
+    assert found_without(ideal_conditions(5, 2)) == ()
     volts, angle = recording(3.0)
     volts[300:] += 0.5
     volts[300:, 2] = 10.5

@@ -21,6 +21,8 @@ from strainwave.calibrate.fluctuation import checked_run, checked_wave_factor
 from strainwave.errors import InputError
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import ArrayLike, NDArray
 
 #: Highest degree of the slow trend.
@@ -239,6 +241,37 @@ def fit_run(
         trend_degree=trend.shape[1] // len(np.unique(stretch)) - 1,
         wave_turns=factor * float(np.ptp(angle)) / (2 * np.pi),
         rows=rows,
+    )
+
+
+def rms_left(runs: Sequence[FluctuationRun], gains: NDArray[np.float64]) -> float:
+    """Root mean square of the fluctuation left, in all harmonics fitted, in the worst run.
+
+    What gains leave in the run they were solved from is nothing; in another one it is what the
+    phasors are uncertain by. Both count.
+
+    Parameters
+    ----------
+    runs : sequence of FluctuationRun
+        The runs.
+    gains : numpy.ndarray
+        g_j, shape (gauges,).
+
+    Returns
+    -------
+    float
+        In the unit of the signals.
+    """
+    return max(
+        float(
+            np.sqrt(
+                np.sum(
+                    np.abs(run.weighted_sum(gains)) ** 2 / 2
+                    + run.sum_standard_uncertainty(gains) ** 2
+                )
+            )
+        )
+        for run in runs
     )
 
 

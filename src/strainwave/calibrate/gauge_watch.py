@@ -1,8 +1,7 @@
-"""What is solved beforehand for the loss of a gauge: gains without each, and what sound gauges do.
+"""What the watch over the gauges has to know of sound ones: limits, noise, what gains leave.
 
-M - 1 gauges cancel N harmonics like M do, where M - 1 >= 2 N + 1 (Godler et al. 2000, eq. 10). How
-far sound gauges are from torque and fluctuation is measured, because a real wave grows and shifts
-with the load: a fault is what exceeds it.
+How far sound gauges are from torque and fluctuation is measured, because a real wave grows and
+shifts with the load: a fault is what exceeds it.
 """
 
 from __future__ import annotations
@@ -15,8 +14,6 @@ import numpy as np
 
 from strainwave.arrays import contiguous
 from strainwave.calibrate.checks import real_number, require_finite, whole_number
-from strainwave.calibrate.fluctuation import enough_gauges
-from strainwave.calibrate.gains import compensating_gains
 from strainwave.errors import InputError
 
 if TYPE_CHECKING:
@@ -24,33 +21,10 @@ if TYPE_CHECKING:
 
 #: By how much limits lie above the largest that sound gauges showed.
 MARGIN: Final = 1.5
+#: Steps of the converter below which noise does not show in the codes as it is.
+LEAST_NOISE_STEPS: Final = 0.25
 #: Share of the torque's range below which a sample counts as one without torque.
 LITTLE_TORQUE: Final = 0.05
-
-
-@dataclass(frozen=True)
-class GainsWithout:
-    """Gains for the loss of one gauge.
-
-    Attributes
-    ----------
-    gauge : int
-        Number of the lost gauge, from 1.
-    gains : numpy.ndarray
-        Shape (gauges,), 0 for the lost one; t.g = sum(t) of all gauges, as with all of them.
-    noise_factor : float
-        M' sum(g^2) / (sum g)^2 of the M' gauges that are left.
-    residual_fluctuation : float
-        Root mean square of the fluctuation that is left, in the unit of the amplitudes.
-    warnings : tuple of str
-        What to know before these gains are used.
-    """
-
-    gauge: int
-    gains: NDArray[np.float64]
-    noise_factor: float
-    residual_fluctuation: float
-    warnings: tuple[str, ...]
 
 
 @dataclass(frozen=True)
@@ -61,12 +35,13 @@ class ConsistencyLimits:
     ----------
     limit : float
         Length of what is left beside both without torque, in the unit of the signals.
-    share : float
-        Growth of that length with the length of the torque's share of the signals.
+    share : float or None
+        Growth of that length with the length of the torque's share of the signals; None where the
+        torque did not change.
     """
 
     limit: float
-    share: float
+    share: float | None
 
 
 def fluctuation_rms(conditions: ArrayLike, gains: ArrayLike) -> float:
@@ -86,70 +61,6 @@ def fluctuation_rms(conditions: ArrayLike, gains: ArrayLike) -> float:
     """
     left = np.asarray(conditions, dtype=np.float64) @ np.asarray(gains, dtype=np.float64)
     return float(np.sqrt(np.sum(left**2) / 2))
-
-
-def gains_without_gauges(
-    conditions: ArrayLike,
-    torque_sensitivities: ArrayLike | None = None,
-    *,
-    harmonics: int | None = None,
-) -> tuple[GainsWithout, ...]:
-    """Solve the gains for the loss of each gauge.
-
-    Parameters
-    ----------
-    conditions : array_like
-        A from `compensation_conditions` of all gauges, shape (2 harmonics, gauges).
-    torque_sensitivities : array_like, optional
-        t_j of all gauges, shape (gauges,); equal without.
-    harmonics : int, optional
-        How many of the harmonics the remaining gauges have to cancel, the lowest first; all
-        without. What they leave of the others is part of the residual.
-
-    Returns
-    -------
-    tuple of GainsWithout
-        For each gauge whose loss the others can make good; empty where M - 1 < 2 N + 1. A gauge
-        without which the gains would cancel the torque as well, or be too noisy, is left out.
-
-    Raises
-    ------
-    InputError
-        If conditions or sensitivities do not fit.
-    """
-    matrix = contiguous("conditions", conditions, np.float64, dimensions=2)
-    require_finite("conditions", matrix, "row", "column")
-    known, gauges = matrix.shape[0] // 2, matrix.shape[1]
-    cancelled = known if harmonics is None else whole_number("harmonics", harmonics)
-    if cancelled > known:
-        raise InputError(
-            f"harmonics = {cancelled}: expected at most the {known} of the conditions; fit the "
-            "fluctuation with more harmonics first"
-        )
-    torque = _sensitivities(torque_sensitivities, gauges)
-    if gauges < 2 or not enough_gauges(gauges - 1, cancelled):
-        return ()
-    found = []
-    for lost in range(gauges):
-        others = np.delete(np.arange(gauges), lost)
-        try:
-            solved = compensating_gains(matrix[: 2 * cancelled, others], torque[others])
-        except InputError:
-            continue
-        gains = np.zeros(gauges)
-        gains[others] = solved.gains * (
-            float(np.sum(torque)) / float(torque[others] @ solved.gains)
-        )
-        found.append(
-            GainsWithout(
-                gauge=lost + 1,
-                gains=gains,
-                noise_factor=solved.noise_factor,
-                residual_fluctuation=fluctuation_rms(matrix, gains),
-                warnings=solved.warnings,
-            )
-        )
-    return tuple(found)
 
 
 def signal_directions(torque_sensitivities: ArrayLike) -> NDArray[np.float64]:
@@ -178,6 +89,7 @@ def consistency_limits(
     conditions: ArrayLike,
     torque_sensitivities: ArrayLike | None = None,
     margin: float = MARGIN,
+    is_loaded: bool = True,
 ) -> ConsistencyLimits:
     """Measure how far sound gauges are from torque and fluctuation, over angles and loads.
 
@@ -195,6 +107,8 @@ def consistency_limits(
         t_j, shape (gauges,); equal without.
     margin : float
         Factor on the largest that was seen, at least 1.
+    is_loaded : bool
+        False where the torque hardly changes: there is one limit, and its growth is not known.
 
     Returns
     -------
@@ -236,12 +150,48 @@ def consistency_limits(
         left -= np.outer(np.cos(2 * (i + 1) * angle), matrix[2 * i + 1])
     along = left @ direction
     length = factor * np.linalg.norm(left - np.outer(along, direction), axis=1)
+    if not is_loaded:
+        return ConsistencyLimits(limit=float(np.max(length)), share=None)
     size = np.abs(along)
     little = size <= LITTLE_TORQUE * float(np.max(size))
     limit = float(np.max(length[little], initial=float(np.min(length))))
     with np.errstate(divide="ignore", invalid="ignore"):
         growth = np.where(size > 0, (length - limit) / size, 0.0)
     return ConsistencyLimits(limit=limit, share=max(0.0, float(np.max(growth))))
+
+
+def white_noise(signals: ArrayLike, *, step: float | None = None) -> NDArray[np.float64]:
+    """Estimate the noise of gauges from third differences, which a slower signal does not reach.
+
+    Parameters
+    ----------
+    signals : array_like
+        Consecutive samples, shape (samples, gauges); what is known to change, taken out.
+    step : float, optional
+        Step of the converter, in the same unit; its rounding is taken off.
+
+    Returns
+    -------
+    numpy.ndarray
+        Standard deviation of each gauge, shape (gauges,); NaN where there are fewer than 4 samples,
+        or where the noise is less than a quarter of a step and the codes do not show it.
+
+    Raises
+    ------
+    InputError
+        If the shape does not fit or a value is not finite.
+    """
+    signal = contiguous("signals", signals, np.float64, dimensions=2)
+    require_finite("signals", signal, "row", "column")
+    if len(signal) < 4:
+        return np.full(signal.shape[1], np.nan)
+    # Binomial weights 1, 3, 3, 1 of white noise: their squares add up to 20.
+    variance = np.mean(np.diff(signal, 3, axis=0) ** 2, axis=0) / 20
+    if step is None:
+        return np.asarray(np.sqrt(variance))
+    # W. F. Sheppard's correction for rounding.
+    noise = np.sqrt(np.maximum(variance - step**2 / 12, 0.0))
+    return np.where(noise >= LEAST_NOISE_STEPS * step, noise, np.nan)
 
 
 def stuck_samples(
@@ -289,9 +239,9 @@ def _sensitivities(values: ArrayLike | None, gauges: int) -> NDArray[np.float64]
     if values is None:
         return np.ones(gauges)
     torque = contiguous("torque_sensitivities", values, np.float64)
-    if torque.shape != (gauges,) or not np.all(np.isfinite(torque)) or not np.all(torque):
+    if torque.shape != (gauges,) or not np.all(np.isfinite(torque)) or not np.any(torque):
         raise InputError(
-            f"torque_sensitivities = {torque.tolist()}: expected {gauges} finite numbers other than "
+            f"torque_sensitivities = {torque.tolist()}: expected {gauges} finite numbers, not all "
             "0, one a gauge; measure them with a known load"
         )
     return torque

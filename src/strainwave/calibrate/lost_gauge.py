@@ -16,8 +16,6 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from strainwave.calibrate.fluctuation_run import FluctuationRun
-
 
 @dataclass(frozen=True)
 class GainsWithoutGauge:
@@ -32,34 +30,31 @@ class GainsWithoutGauge:
         stays what it is with all gauges.
     noise_factor : float
         M sum(g^2) / (sum g)^2 with all M gauges counted.
-    residual_after : numpy.ndarray
-        Amplitude left in each harmonic that was fitted, the largest over the runs, shape
-        (harmonics,).
     """
 
     gauge: int
     gains: NDArray[np.float64]
     noise_factor: float
-    residual_after: NDArray[np.float64]
 
 
 def gains_without_each(
-    runs: Sequence[FluctuationRun],
-    harmonics: Sequence[int],
+    conditions: Sequence[NDArray[np.float64]],
     torque_sensitivities: NDArray[np.float64],
     *,
+    torque_signal: float | None = None,
     most_noise: float = MOST_NOISE,
 ) -> tuple[tuple[GainsWithoutGauge, ...], tuple[str, ...]]:
     """Solve the gains without each gauge in turn, where enough gauges are left.
 
     Parameters
     ----------
-    runs : sequence of FluctuationRun
-        One run, or one for every condition.
-    harmonics : sequence of int
-        Harmonics to cancel, from 1.
+    conditions : sequence of numpy.ndarray
+        A of Godler 2000, eq. (9), of all gauges for the harmonics that the others have to cancel,
+        shape (2 harmonics, gauges): one for each recording.
     torque_sensitivities : numpy.ndarray
         t_j, shape (gauges,).
+    torque_signal : float, optional
+        t.g of the gains of all gauges, which the others keep; sum(t) without.
     most_noise : float
         Largest noise factor that is accepted, against equal gains of the gauges that are left.
 
@@ -68,25 +63,37 @@ def gains_without_each(
     tuple
         The gain sets, none where M - 1 < 2 N + 1; and a sentence for every gauge that cannot be
         lost.
+
+    Raises
+    ------
+    InputError
+        If conditions do not fit the sensitivities.
     """
     gauges = len(torque_sensitivities)
-    if gauges < 3 or not enough_gauges(gauges - 1, len(harmonics)):
+    for matrix in conditions:
+        if matrix.ndim != 2 or matrix.shape[1] != gauges:
+            raise InputError(
+                f"conditions has the shape {matrix.shape}: expected a column for each of "
+                f"{gauges} torque_sensitivities; make it with compensation_conditions"
+            )
+    if not enough_gauges(gauges - 1, len(conditions[0]) // 2):
         return (), ()
-    conditions = np.vstack([run.conditions(harmonics) for run in runs])
+    stacked = np.vstack(conditions)
+    kept = float(torque_sensitivities.sum()) if torque_signal is None else torque_signal
     found, said = [], []
     for lost in range(gauges):
         left = np.arange(gauges) != lost
         try:
             solved = compensating_gains(
-                conditions[:, left], torque_sensitivities[left], most_noise=most_noise
+                stacked[:, left], torque_sensitivities[left], most_noise=most_noise
             )
         except InputError as error:
             said.append(f"Without gauge {lost + 1} no gains are stored: {error}")
             continue
         gains = np.zeros(gauges)
-        share = torque_sensitivities.sum() / torque_sensitivities[left].sum()
-        gains[left] = solved.gains * share
-        after = np.max([np.abs(run.weighted_sum(gains)) for run in runs], axis=0)
+        # Not by the sum of the others: what is calibrated with all gauges holds without one.
+        signal = float(torque_sensitivities[left] @ solved.gains)
+        gains[left] = solved.gains * (kept / signal)
         noise = gauges * float(np.sum(gains**2)) / float(np.sum(gains)) ** 2
-        found.append(GainsWithoutGauge(lost + 1, gains, noise, after))
+        found.append(GainsWithoutGauge(lost + 1, gains, noise))
     return tuple(found), tuple(said)

@@ -29,6 +29,7 @@ def fluctuation(
     fit_delay: bool = False,
     over_grid: Literal["sum", "worst"] = "sum",
     most_noise: float = 10.0,
+    without_gauge_harmonics: int | None = None,
     figure: Path | None = None,
     json: bool = False,
 ) -> None:
@@ -68,6 +69,8 @@ def fluctuation(
         With several loads or temperatures: the least sum of squares, or the least worst residual.
     most_noise : float
         Largest noise power over that of equal gains that is accepted.
+    without_gauge_harmonics : int
+        How many harmonics the gains for a lost gauge cancel; as many as those of all without.
     figure : Path
         The vector diagram: .svg, .pdf or .png.
     json : bool
@@ -91,6 +94,7 @@ def fluctuation(
         fit_delay=fit_delay,
         over_grid=over_grid,
         most_noise=most_noise,
+        without_gauge_harmonics=without_gauge_harmonics,
     )
     command = command_text(
         ("calibrate", "fluctuation", log),
@@ -106,6 +110,7 @@ def fluctuation(
             "--fit-delay": fit_delay,
             "--over-grid": None if over_grid == "sum" else over_grid,
             "--most-noise": None if most_noise == 10.0 else most_noise,
+            "--without-gauge-harmonics": without_gauge_harmonics,
             "--out": out,
         },
     )
@@ -172,7 +177,13 @@ def _table(result: FluctuationCalibration) -> list[str]:
             f"  {each['name']}: {' '.join(f'{left:.3g}' for left in each['residual_after'])} V left"
             for each in found["conditions"]
         ]
-    if result.without_gauge:
-        lost = ", ".join(str(each.gauge) for each in result.without_gauge)
-        lines.append(f"  lost gauge     gains without gauge {lost} are stored")
+    sets = result.lost_gauges.sets
+    if sets:
+        lost = ", ".join(str(each.gauge) for each in sets)
+        worst_V = max(each["residual_rms"] for each in found["without_gauge"])
+        lines.append(
+            f"  lost gauge     gains without gauge {lost} are stored; they leave up to "
+            f"{worst_V:.2g} V rms"
+        )
+    lines += [f"  lost gauge     {words}" for words in found["gauge_watch"]["missing"]]
     return lines

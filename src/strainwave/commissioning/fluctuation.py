@@ -6,6 +6,7 @@ gains that cancel them.
 
 from __future__ import annotations
 
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
@@ -14,23 +15,24 @@ import numpy as np
 
 from strainwave.calibrate.angle_from_gauges import AMBIGUITY, calibrate_without_angle
 from strainwave.calibrate.circuit import parse_circuit
-from strainwave.calibrate.fluctuation_run import FluctuationRun, fit_run
+from strainwave.calibrate.fluctuation_run import FluctuationRun, fit_run, rms_left
 from strainwave.calibrate.gain_solution import OverGrid, solve_gains
 from strainwave.calibrate.gains import MOST_NOISE
-from strainwave.calibrate.lost_gauge import gains_without_each
 from strainwave.calibrate.quantise import quantise_gains
 from strainwave.calibrate.wave_timing import delayed_in_stretches
 from strainwave.commissioning.conditions import Condition, conditions_of
 from strainwave.commissioning.fluctuation_result import FluctuationCalibration
 from strainwave.commissioning.fluctuation_warnings import warnings_of_fit, warnings_of_gains
-from strainwave.commissioning.gains_section import gains_section, rms_left
+from strainwave.commissioning.gains_section import gains_section
 from strainwave.commissioning.gauge_table import (
     gauge_positions_rad,
     read_gauges,
     require_signals,
     saturation_warnings,
 )
+from strainwave.commissioning.lost_gauges import check_harmonics_without, sets_without
 from strainwave.commissioning.told import GearConfiguration, parse_sensitivities, told_factor
+from strainwave.commissioning.watch_values import watch_values
 from strainwave.commissioning.wave_angle import Timing, found_timing
 from strainwave.errors import InputError
 from strainwave.joint import Provenance, write_joint
@@ -38,7 +40,7 @@ from strainwave.records.joint_output import check_joint_output, started_joint
 from strainwave.records.mapping import MapKeys
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Iterator, Sequence
     from fractions import Fraction
 
     from numpy.typing import NDArray
@@ -89,6 +91,8 @@ class FluctuationOptions:
         What is least over several conditions.
     most_noise : float
         Largest noise factor that is accepted.
+    without_gauge_harmonics : int or None
+        How many harmonics the gains for a lost gauge cancel, the lowest first; all without.
     """
 
     mapping: tuple[str, ...]
@@ -101,6 +105,7 @@ class FluctuationOptions:
     fit_delay: bool = False
     over_grid: OverGrid = "sum"
     most_noise: float = MOST_NOISE
+    without_gauge_harmonics: int | None = None
 
 
 def calibrate_fluctuation(
@@ -155,6 +160,7 @@ def calibrate_fluctuation(
             f"--map: {gauges} gauge column is mapped; expected at least two that can be weighed "
             "against each other, 2N + 1 to cancel N harmonics, so map gauges=COLUMN+COLUMN+..."
         )
+    check_harmonics_without(options.without_gauge_harmonics, options.harmonics, gauges)
     require_signals(table, volts)
     sensitivities, has_sensitivities = parse_sensitivities(
         options.torque_sensitivity, joint, gauges
@@ -164,9 +170,10 @@ def calibrate_fluctuation(
     said += more + saturation_warnings(volts, joint)
     timing, more = _timing(table, conditions, joint, options)
     said += more
+    angles = [_angle(table, each, positions_rad, timing, sensitivities) for each in conditions]
     runs = tuple(
-        _run(table, condition, positions_rad, options.harmonics, timing, sensitivities)
-        for condition in conditions
+        _run(table, condition, angle, positions_rad, options.harmonics, timing)
+        for condition, angle in zip(conditions, angles, strict=True)
     )
     present, more = _present(table, runs, options.harmonics)
     said += more + warnings_of_fit(conditions, runs, options.harmonics)
@@ -181,9 +188,25 @@ def calibrate_fluctuation(
     if circuit is not None:
         stacked = np.vstack([run.conditions(present) for run in runs])
         quantised = quantise_gains(circuit, solution.gains, stacked, sensitivities)
-    without, more = gains_without_each(runs, present, sensitivities, most_noise=options.most_noise)
     gains = solution.gains if quantised is None else quantised.gains
-    said += warnings_of_gains(conditions, runs, solution, gains) + more
+    lost = sets_without(
+        runs,
+        present,
+        sensitivities,
+        gains,
+        harmonics=options.without_gauge_harmonics,
+        most_noise=options.most_noise,
+    )
+    said += warnings_of_gains(conditions, runs, solution, gains) + lost.warnings
+    watch = watch_values(
+        table,
+        conditions,
+        runs,
+        None if timing.factor is None else [timing.factor * angle for angle in angles],
+        sensitivities,
+        delay_s=timing.delay_s,
+        joint=joint,
+    )
     result = FluctuationCalibration(
         log=log,
         out=out,
@@ -195,14 +218,15 @@ def calibrate_fluctuation(
         held_out=_held_out(
             table, conditions, positions_rad, options, timing, sensitivities, present
         ),
-        without_gauge=without,
+        lost_gauges=lost,
+        watch=watch,
         factor=timing.factor,
         timing=timing.found,
         delay_s=timing.delay_s,
         rms_left=rms_left(runs, gains),
         warnings=said,
     )
-    section = gains_section(result, sensitivities if has_sensitivities else None)
+    section = gains_section(result, sensitivities if has_sensitivities else None, joint)
     joint_file.set_section("gains", section, Provenance.of_file(log, command=command))
     if before_writing is not None:
         before_writing(result)
@@ -249,38 +273,58 @@ def _timing(
     )
 
 
-def _run(
+def _angle(
     table: Table,
     condition: Condition,
     positions_rad: NDArray[np.float64],
-    harmonics: int,
     timing: Timing,
     sensitivities: NDArray[np.float64],
+) -> NDArray[np.float64]:
+    """Angle of the motor when the gauges were read; that of the wave where no angle is mapped."""
+    rows = condition.rows
+    with _naming(table, condition):
+        if timing.factor is None:
+            return calibrate_without_angle(
+                table.values["gauges"][rows],
+                positions_rad=positions_rad,
+                torque_sensitivities=sensitivities,
+            ).wave_angle_rad
+        angle = table.values["angle"][rows]
+        if timing.delay_s == 0:
+            return angle
+        time_s = table.values["time"][rows]
+        return delayed_in_stretches(angle, time_s, timing.delay_s, condition.stretches)
+
+
+def _run(
+    table: Table,
+    condition: Condition,
+    angle_rad: NDArray[np.float64],
+    positions_rad: NDArray[np.float64],
+    harmonics: int,
+    timing: Timing,
 ) -> FluctuationRun:
     rows = condition.rows
-    volts = table.values["gauges"][rows]
-    try:
-        if timing.factor is None:
-            angle = calibrate_without_angle(
-                volts, positions_rad=positions_rad, torque_sensitivities=sensitivities
-            ).wave_angle_rad
-        else:
-            angle = table.values["angle"][rows]
-            if timing.delay_s != 0:
-                time_s = table.values["time"][rows]
-                angle = delayed_in_stretches(angle, time_s, timing.delay_s, condition.stretches)
-        turned = np.ptp(angle) * (timing.factor or 1.0)
-        # More harmonics than the run can tell apart are not fitted.
-        beyond = int(np.clip((len(rows) - 2) // 8 - harmonics, 0, HARMONICS_BEYOND))
+    turned = np.ptp(angle_rad) * (timing.factor or 1.0)
+    # More harmonics than the run can tell apart are not fitted.
+    beyond = int(np.clip((len(rows) - 2) // 8 - harmonics, 0, HARMONICS_BEYOND))
+    with _naming(table, condition):
         return fit_run(
-            volts,
-            angle,
+            table.values["gauges"][rows],
+            angle_rad,
             positions_rad=positions_rad,
             harmonics=harmonics + (beyond if turned >= np.pi else 0),
             wave_factor=timing.factor or 1.0,
             time_s=table.values["time"][rows] if "time" in table else None,
             stretches=condition.stretches,
         )
+
+
+@contextmanager
+def _naming(table: Table, condition: Condition) -> Iterator[None]:
+    """Say in which file and condition something cannot be used."""
+    try:
+        yield
     except InputError as error:
         where = f" ({condition.name})" if condition.name else ""
         raise InputError(f"{table.source}{where}: {error}") from error
@@ -325,7 +369,14 @@ def _held_out(
     ]
     try:
         first, second = (
-            _run(table, half, positions_rad, options.harmonics, timing, sensitivities)
+            _run(
+                table,
+                half,
+                _angle(table, half, positions_rad, timing, sensitivities),
+                positions_rad,
+                options.harmonics,
+                timing,
+            )
             for half in halves
         )
         gains = solve_gains([first], present, sensitivities, most_noise=options.most_noise).gains

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from strainwave.calibrate.fluctuation_run import rms_left
+
 if TYPE_CHECKING:
     from pathlib import Path
 
@@ -14,10 +16,11 @@ if TYPE_CHECKING:
 
     from strainwave.calibrate.fluctuation_run import FluctuationRun
     from strainwave.calibrate.gain_solution import GainSolution
-    from strainwave.calibrate.lost_gauge import GainsWithoutGauge
     from strainwave.calibrate.quantise import QuantisedGains
     from strainwave.calibrate.wave_timing import WaveTiming
     from strainwave.commissioning.conditions import Condition
+    from strainwave.commissioning.lost_gauges import LostGauges
+    from strainwave.commissioning.watch_values import WatchValues
 
 
 @dataclass(frozen=True)
@@ -41,8 +44,10 @@ class FluctuationCalibration:
     held_out : numpy.ndarray or None
         Amplitude left in the second half of the run by gains from the first, shape (harmonics
         fitted,).
-    without_gauge : tuple of GainsWithoutGauge
+    lost_gauges : LostGauges
         Gains for the loss of each gauge.
+    watch : WatchValues
+        Sound gauges, for the watch over them.
     factor : float or None
         Factor m that was used; None where the angle is from the gauges.
     timing : WaveTiming or None
@@ -63,7 +68,8 @@ class FluctuationCalibration:
     solution: GainSolution
     quantised: QuantisedGains | None
     held_out: NDArray[np.float64] | None
-    without_gauge: tuple[GainsWithoutGauge, ...]
+    lost_gauges: LostGauges
+    watch: WatchValues
     factor: float | None
     timing: WaveTiming | None
     delay_s: float
@@ -106,6 +112,21 @@ class FluctuationCalibration:
         """Standard uncertainty of what is left, the largest over the conditions."""
         each = [run.sum_standard_uncertainty(self.gains) for run in self.runs]
         return np.asarray(np.max(each, axis=0))
+
+    def zero_shift_V(self, gains: NDArray[np.float64]) -> float:
+        """Zero of other gains less that of these, which the torque's zero is calibrated for.
+
+        Parameters
+        ----------
+        gains : numpy.ndarray
+            g_j, shape (gauges,).
+
+        Returns
+        -------
+        float
+            V.
+        """
+        return float((gains - self.gains) @ self.watch.zeros_V)
 
     def as_dict(self) -> dict[str, Any]:
         """Plain values for JSON.
@@ -169,10 +190,20 @@ class FluctuationCalibration:
                     "gauge": each.gauge,
                     "gains": each.gains.tolist(),
                     "noise_factor": each.noise_factor,
-                    "residual_after": each.residual_after[:count].tolist(),
+                    "residual_after": self.left(each.gains)[:count].tolist(),
+                    "residual_rms": rms_left(self.runs, each.gains),
+                    "zero_shift_V": self.zero_shift_V(each.gains),
                 }
-                for each in self.without_gauge
+                for each in self.lost_gauges.sets
             ],
+            "gauge_watch": {
+                "zeros_V": self.watch.zeros_V.tolist(),
+                "harmonics": len(self.watch.phasors),
+                "noise_V": self.watch.noise_V,
+                "consistency_limit_V": self.watch.limit_V,
+                "consistency_limit_share": self.watch.share,
+                "missing": [*self.lost_gauges.says, *self.watch.says],
+            },
             "out": str(self.out),
             "warnings": list(self.warnings),
         }

@@ -6,50 +6,20 @@ from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
+from strainwave.calibrate.fluctuation_run import rms_left
 from strainwave.joint import Gains, build_section
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from numpy.typing import NDArray
 
-    from strainwave.calibrate.fluctuation_run import FluctuationRun
     from strainwave.commissioning.fluctuation_result import FluctuationCalibration
-
-
-def rms_left(runs: Sequence[FluctuationRun], gains: NDArray[np.float64]) -> float:
-    """Root mean square of the fluctuation left, in all harmonics fitted, in the worst run.
-
-    What gains leave in the run they were solved from is nothing; in another one it is what the
-    phasors are uncertain by. Both count.
-
-    Parameters
-    ----------
-    runs : sequence of FluctuationRun
-        The runs.
-    gains : numpy.ndarray
-        g_j, shape (gauges,).
-
-    Returns
-    -------
-    float
-        In the unit of the signals.
-    """
-    return max(
-        float(
-            np.sqrt(
-                np.sum(
-                    np.abs(run.weighted_sum(gains)) ** 2 / 2
-                    + run.sum_standard_uncertainty(gains) ** 2
-                )
-            )
-        )
-        for run in runs
-    )
+    from strainwave.joint import Joint
 
 
 def gains_section(
-    result: FluctuationCalibration, torque_sensitivities: NDArray[np.float64] | None
+    result: FluctuationCalibration,
+    torque_sensitivities: NDArray[np.float64] | None,
+    joint: Joint | None = None,
 ) -> Gains:
     """Build the section.
 
@@ -59,6 +29,8 @@ def gains_section(
         What was found.
     torque_sensitivities : numpy.ndarray or None
         t_j where they were told, shape (gauges,).
+    joint : Joint, optional
+        The joint as it was: what a person chose stays.
 
     Returns
     -------
@@ -79,9 +51,32 @@ def gains_section(
                 "noise_factor": each.noise_factor,
                 "residual_fluctuation_V": rms_left(result.runs, each.gains),
             }
-            for each in result.without_gauge
+            for each in result.lost_gauges.sets
         ],
+        **_watch(result),
     }
+    if joint is not None and joint.gains is not None and joint.gains.detection_time_s is not None:
+        values["detection_time_s"] = joint.gains.detection_time_s
     if torque_sensitivities is not None:
         values["torque_sensitivities"] = torque_sensitivities.tolist()
     return cast("Gains", build_section("gains", values, "what was calibrated"))
+
+
+def _watch(result: FluctuationCalibration) -> dict[str, Any]:
+    watch = result.watch
+    amplitudes, phases = np.abs(watch.phasors), np.angle(watch.phasors)
+    limits = {
+        "noise_V": watch.noise_V,
+        "consistency_limit_V": watch.limit_V,
+        "consistency_limit_share": watch.share,
+    }
+    signals = [
+        {
+            "zero_V": float(zero_V),
+            "amplitudes_V": amplitudes[:, j].tolist(),
+            "phases_rad": phases[:, j].tolist(),
+        }
+        for j, zero_V in enumerate(watch.zeros_V)
+    ]
+    known = {name: value for name, value in limits.items() if value is not None}
+    return {"gauge_signals": signals, **known}

@@ -39,8 +39,8 @@ def gauge_monitor_of(joint: Joint, sample_period_s: float) -> _core.GaugeMonitor
     ----------
     joint : Joint
         A joint with ``[gauges]``, converter included, and with ``without_gauge`` or
-        ``gauge_signals`` in ``[gains]``. With the latter and ``consistency_limit_V`` the gauges
-        are held against each other, with ``noise_V`` a code that stands is found at rest.
+        ``gauge_signals`` in ``[gains]``. With the latter, ``consistency_limit_V`` and
+        ``consistency_limit_share`` the gauges are held against each other, with ``noise_V`` a code that stands is found at rest.
     sample_period_s : float
         Time from one sample to the next, s.
 
@@ -149,7 +149,9 @@ def _consistency_of(
     sample_period_s: float,
 ) -> _core.ConsistencyCheck | None:
     """Build the parity check, None where too little is known or there are too few gauges."""
-    if not gains.gauge_signals or gains.consistency_limit_V is None or len(gains.gains) < 3:
+    limit_V, share = gains.consistency_limit_V, gains.consistency_limit_share
+    # Without its growth the limit holds without torque alone, and sound gauges exceed it under load.
+    if not gains.gauge_signals or limit_V is None or share is None or len(gains.gains) < 3:
         return None
     delay_s = 0.0
     if joint.signals is not None and joint.signals.angle_to_torque_delay_s is not None:
@@ -159,8 +161,8 @@ def _consistency_of(
         samples=samples,
         signal_directions=signal_directions(sensitivities),
         gauge_zero_V=np.array([signal.zero_V for signal in gains.gauge_signals]),
-        limit_V=gains.consistency_limit_V,
-        limit_per_V=gains.consistency_limit_share or 0.0,
+        limit_V=limit_V,
+        limit_per_V=share,
         fluctuation_V=wave_V,
         wave_factor=gear_of(joint).wave_factor if len(wave_V) else 1,
         delay_samples=delay_s / sample_period_s,

@@ -118,7 +118,8 @@ class Gains(Section):
     consistency_limit_share: Annotated[float, Unit("1")] | None = Field(
         default=None,
         ge=0.0,
-        description="By how much that length grows with that of the torque in the gauges' signals",
+        description="By how much that length grows with that of the torque in the gauges' signals; "
+        "gauges are held against each other only where both are given",
     )
     detection_time_s: Annotated[float, Unit("s")] | None = Field(
         default=None,
