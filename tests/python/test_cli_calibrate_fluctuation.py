@@ -20,11 +20,13 @@ from helpers.gauge_logs import (
     write_run,
 )
 from helpers.log_files import command, write_csv, write_parquet
+from helpers.watched_joint import described_joint, fluctuation_call, put, write_loads
 from strainwave.calibrate.fluctuation import equally_spaced_positions_rad
 from strainwave.calibrate.fluctuation_run import fit_run
 from strainwave.errors import InputError
 from strainwave.joint import build_section, new_joint, read_joint, write_joint
 from strainwave.joint.provenance import Provenance
+from strainwave.simulate.driving import constant_speed
 from strainwave.simulate.presets.godler2000 import godler2000
 from strainwave.simulate.trajectories import PiecewiseLinear, Sine
 
@@ -539,3 +541,156 @@ def test_bad_recordings(tmp_path: Path, call: Call) -> None:
     assert ended.code == 2
     assert "no gauge shows a fluctuation" in ended.err
     assert not (tmp_path / "j.toml").exists()
+
+
+def joint_gains(path: Path) -> Any:
+    section = read_joint(path).joint.gains
+    assert section is not None
+    return section
+
+
+def test_what_the_watch_over_the_gauges_needs(tmp_path: Path, call: Call) -> None:
+    station = station_of(5)
+    path = described_joint(tmp_path / "joint.toml", station)
+    log = write_loads(tmp_path / "loads.parquet", station)
+    ended = call(*fluctuation_call(log, path, 5, 2), "--without-gauge-harmonics", 1)
+    assert ended.code == 0, ended.err
+    section = joint_gains(path)
+    assert len(section.gauge_signals) == 5
+    assert all(len(each.amplitudes_V) == 3 for each in section.gauge_signals)
+    # The station's noise, and that of the converter's rounding taken off.
+    assert section.noise_V == pytest.approx(1e-3, rel=0.05)
+    # What these signals leave of other sound gauges, at other angles, speeds and loads.
+    run = station.rotate(
+        constant_speed(90.0, 0.5), 3.0, 31, contact_torque=PiecewiseLinear((0, 3), (-50.0, 50.0))
+    )
+    left = run.volts - np.array([each.zero_V for each in section.gauge_signals])
+    for j, each in enumerate(section.gauge_signals):
+        for i, (amplitude, phase) in enumerate(
+            zip(each.amplitudes_V, each.phases_rad, strict=True), 1
+        ):
+            left[:, j] -= amplitude * np.sin(2 * i * run.motor_angle_rad + phase)
+    torque = left.mean(axis=1)
+    length = np.linalg.norm(left - torque[:, np.newaxis], axis=1)
+    limit = section.consistency_limit_V + section.consistency_limit_share * np.abs(
+        torque
+    ) * math.sqrt(5)
+    assert np.all(length < limit)
+    assert np.max(length / limit) > 0.2
+    # Gains without a gauge keep torque and zero, and state what they leave.
+    run = turns_of(station, 2.0, 8)
+    for stored, told in zip(section.without_gauge, ended.result["without_gauge"], strict=True):
+        assert sum(stored.gains) == pytest.approx(5)
+        shift_V = told["zero_shift_V"]
+        zeros_V = np.array([each.zero_V for each in section.gauge_signals])
+        assert shift_V == pytest.approx(
+            (np.array(stored.gains) - section.gains) @ zeros_V, abs=1e-9
+        )
+        seen_V = float(np.std(run.volts @ np.array(stored.gains)))
+        assert told["residual_rms"] == stored.residual_fluctuation_V
+        # Stated is the worst of the loads; this is without load.
+        assert 0.4 * told["residual_rms"] < seen_V < told["residual_rms"]
+        assert told["residual_after"][0] < 1e-3 < told["residual_after"][1]
+    missing = ended.result["gauge_watch"]["missing"]
+    assert missing == [
+        "gains without a gauge leave harmonic 2, as asked: ripple comes back when one is lost"
+    ]
+
+
+def test_one_load_gives_a_limit_and_no_growth(tmp_path: Path, call: Call) -> None:
+    station = station_of(5)
+    log = write_run(tmp_path / "run.parquet", turns_of(station, 3.0, 3))
+    out = tmp_path / "j.toml"
+    watch = calibrate(call, log, 5, 2, out, *GEAR).result["gauge_watch"]
+    section = joint_gains(out)
+    assert section.consistency_limit_share is None
+    # Noise of 1 mV in four directions, half as much again; the wave's own harmonics beyond.
+    assert 0.004 < section.consistency_limit_V == watch["consistency_limit_V"] < 0.03
+    assert section.noise_V == pytest.approx(1e-3, rel=0.1)
+    assert section.without_gauge == ()
+    words = " ".join(watch["missing"])
+    assert "--without-gauge-harmonics 1 stores gains that let ripple come back" in words
+    assert "record" in words
+    assert "under one load alone" in words
+    ended = call(
+        *("calibrate", "fluctuation", log, "--map", mapping_of(5), "--harmonics", 2, *GEAR),
+        *("--out", tmp_path / "k.toml"),
+    )
+    assert "lost gauge     4 gauges do not cancel 2 harmonic(s)" in ended.out
+
+
+def test_without_an_angle_there_are_zeros_and_no_wave(tmp_path: Path, call: Call) -> None:
+    log = write_run(tmp_path / "run.parquet", turns_of(station_of(5), 2.0, 3))
+    out = tmp_path / "j.toml"
+    ended = call(
+        *("calibrate", "fluctuation", log, "--map", mapping_of(5, angle="")),
+        *("--harmonics", 1, "--out", out, "--json"),
+    )
+    assert ended.code == 0, ended.err
+    section = joint_gains(out)
+    assert all(each.amplitudes_V == () for each in section.gauge_signals)
+    assert section.consistency_limit_V is None
+    assert len(section.without_gauge) == 5
+    assert any("without an angle" in words for words in ended.result["gauge_watch"]["missing"])
+
+
+def test_a_delay_that_the_joint_file_does_not_have_leaves_the_comparison_out(
+    tmp_path: Path, call: Call
+) -> None:
+    base = station_of(5)
+    station = replace(base, acquisition=replace(base.acquisition, angle_to_torque_delay_s=0.003))
+    run = station.rotate(Sine(3 * math.pi, 0.4, 0.0, 4 * math.pi), 5.0, 1)
+    log = write_run(tmp_path / "run.parquet", run)
+    out = tmp_path / "j.toml"
+    result = calibrate(call, log, 5, 2, out, *GEAR, "--fit-delay").result
+    assert joint_gains(out).consistency_limit_V is None
+    assert any("angle_to_torque_delay_s" in words for words in result["gauge_watch"]["missing"])
+
+
+def test_what_a_person_chose_stays(tmp_path: Path, call: Call) -> None:
+    station = station_of(5)
+    path = described_joint(tmp_path / "joint.toml", station)
+    joint_file = read_joint(path)
+    put(joint_file, "gains", {"gains": [1.0] * 5, "detection_time_s": 0.02})
+    write_joint(joint_file, path)
+    log = write_loads(tmp_path / "loads.parquet", station, (0.0, 40.0))
+    ended = call(*fluctuation_call(log, path, 5, 1))
+    assert ended.code == 0, ended.err
+    assert joint_gains(path).detection_time_s == 0.02
+    assert [each.gauge for each in joint_gains(path).without_gauge] == [1, 2, 3, 4, 5]
+
+
+def test_gains_of_a_circuit_and_those_without_a_gauge_read_one_torque(
+    tmp_path: Path, call: Call
+) -> None:
+    log = write_run(tmp_path / "run.parquet", turns_of(station_of(5), 2.0, 3))
+    out = tmp_path / "j.toml"
+    calibrate(call, log, 5, 1, out, *GEAR, "--quantise", "E24")
+    section = joint_gains(out)
+    assert abs(sum(section.gains) - 5) > 1e-3
+    for each in section.without_gauge:
+        assert sum(each.gains) == pytest.approx(sum(section.gains), rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("gauges", "harmonics", "asked", "words"),
+    [
+        (5, 2, 2, "expected a whole number from 1 to 1"),
+        (5, 2, 0, "expected a whole number from 1 to 1"),
+        (5, 1, 2, "expected a whole number from 1 to 1"),
+        (3, 1, 1, "expected four gauges or more"),
+    ],
+)
+def test_harmonics_that_the_others_do_not_cancel_are_refused(
+    tmp_path: Path, call: Call, gauges: int, harmonics: int, asked: int, words: str
+) -> None:
+    log = write_run(tmp_path / "run.parquet", turns_of(station_of(gauges), 1.0, 3))
+    out = tmp_path / "j.toml"
+    ended = call(
+        *("calibrate", "fluctuation", log, "--map", mapping_of(gauges), "--harmonics", harmonics),
+        *("--out", out, "--without-gauge-harmonics", asked),
+    )
+    assert ended.code == 2
+    assert f"--without-gauge-harmonics {asked}: " in ended.err
+    assert words in ended.err
+    assert not out.exists()

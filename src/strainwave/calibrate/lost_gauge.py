@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from strainwave.calibrate.gains import CompensatingGains
+
 
 @dataclass(frozen=True)
 class GainsWithoutGauge:
@@ -50,7 +52,8 @@ def gains_without_each(
     ----------
     conditions : sequence of numpy.ndarray
         A of Godler 2000, eq. (9), of all gauges for the harmonics that the others have to cancel,
-        shape (2 harmonics, gauges): one for each recording.
+        shape (2 harmonics, gauges): one for each recording. Where few gauges would follow several
+        recordings with gains that are too noisy, they cancel the mean.
     torque_sensitivities : numpy.ndarray
         t_j, shape (gauges,).
     torque_signal : float, optional
@@ -78,14 +81,14 @@ def gains_without_each(
             )
     if not enough_gauges(gauges - 1, len(conditions[0]) // 2):
         return (), ()
-    stacked = np.vstack(conditions)
+    stacked, mean = np.vstack(conditions), np.mean(conditions, axis=0)
     kept = float(torque_sensitivities.sum()) if torque_signal is None else torque_signal
     found, said = [], []
     for lost in range(gauges):
         left = np.arange(gauges) != lost
         try:
-            solved = compensating_gains(
-                stacked[:, left], torque_sensitivities[left], most_noise=most_noise
+            solved = _solved(
+                stacked[:, left], mean[:, left], torque_sensitivities[left], most_noise
             )
         except InputError as error:
             said.append(f"Without gauge {lost + 1} no gains are stored: {error}")
@@ -97,3 +100,15 @@ def gains_without_each(
         noise = gauges * float(np.sum(gains**2)) / float(np.sum(gains)) ** 2
         found.append(GainsWithoutGauge(lost + 1, gains, noise))
     return tuple(found), tuple(said)
+
+
+def _solved(
+    stacked: NDArray[np.float64],
+    mean: NDArray[np.float64],
+    torque_sensitivities: NDArray[np.float64],
+    most_noise: float,
+) -> CompensatingGains:
+    try:
+        return compensating_gains(stacked, torque_sensitivities, most_noise=most_noise)
+    except InputError:
+        return compensating_gains(mean, torque_sensitivities, most_noise=most_noise)

@@ -9,6 +9,7 @@ import cyclopts
 
 if TYPE_CHECKING:
     from strainwave.records import FilteredLog
+    from strainwave.records.gauge_watch import WatchedGauges
 
 
 def filter_command(
@@ -160,6 +161,17 @@ def _summary(result: FilteredLog) -> list[str]:
             f"  torque {result.torque_before_rms_Nm:.4g} Nm rms before and "
             f"{result.torque_after_rms_Nm:.4g} Nm after; ripple {result.ripple_rms_Nm:.4g} Nm rms"
         )
+    if result.gauges is not None:
+        lines.append(f"  gauges watched: {_gauges(result.gauges)}")
     flagged = [f"{name} {count}" for name, count in result.rows_by_flag.items() if count]
     lines.append(f"  rows with a flag: {', '.join(flagged) or 'none'}")
     return lines
+
+
+def _gauges(found: WatchedGauges) -> str:
+    lost = found.lost
+    if lost is None:
+        return "none is lost"
+    left = "no torque since" if lost.residual_Nm is None else f"{lost.residual_Nm:.3g} Nm rms left"
+    time = "" if lost.log_time_s is None else f" at {lost.log_time_s:.10g} s"
+    return f"gauge {lost.gauge} lost ({lost.fault}){time}, row {lost.row}; {left}"

@@ -202,20 +202,24 @@ def _noise_V(
     """Return the least noise of a gauge: with more, a sound gauge would look stuck."""
     volts = table.values["gauges"]
     step_V = _step_V(volts, joint)
-    found = []
+    found, rows_of = [], []
     for place, (condition, run) in enumerate(zip(conditions, runs, strict=True)):
-        left_V = volts[condition.rows]
+        parts_V = [volts[condition.rows]]
         if wave_angles_rad is not None:
-            parts = np.stack([run.phasors.real, run.phasors.imag], axis=1)
+            phasors = np.stack([run.phasors.real, run.phasors.imag], axis=1)
             columns = wave_columns(wave_angles_rad[place], len(run.phasors))
-            left_V = left_V - columns @ parts.reshape(-1, volts.shape[1])
+            parts_V.append(parts_V[0] - columns @ phasors.reshape(-1, volts.shape[1]))
         for stretch in np.unique(condition.stretches):
             rows = condition.stretches == stretch
             if np.count_nonzero(rows) >= FEWEST_ROWS:
-                found.append(white_noise(left_V[rows], step=step_V))
+                # A fast wave is in the one, the encoder's counts are in the other: both say at most.
+                each = [white_noise(part_V[rows], step=step_V) for part_V in parts_V]
+                found.append(np.min(each, axis=0))
+                rows_of.append(np.count_nonzero(rows))
     if not found or not np.all(np.isfinite(found)):
         return None
-    least_V = float(np.min(found))
+    of_gauges_V = np.sqrt(np.average(np.square(found), axis=0, weights=rows_of))
+    least_V = float(of_gauges_V.min())
     return least_V if least_V > 0 else None
 
 

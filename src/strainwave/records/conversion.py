@@ -46,6 +46,8 @@ class Columns:
     gauges_V : numpy.ndarray or None
         Voltage of every gauge, shape (rows, gauges), V; where it is there, the torque is made of
         it.
+    temperature_degC : numpy.ndarray or None
+        Temperature of the flexspline, shape (rows,), degC.
     """
 
     first_row: int
@@ -56,6 +58,7 @@ class Columns:
     torque_Nm: NDArray[np.float64]
     expected_torque_Nm: NDArray[np.float64] | None
     gauges_V: NDArray[np.float64] | None = None
+    temperature_degC: NDArray[np.float64] | None = None
 
     def __len__(self) -> int:
         return len(self.torque_Nm)
@@ -110,6 +113,7 @@ class Converter:
             signals["torque"] if gauges_V is None else self._torque(gauges_V, signals),
             signals.get("expected-torque"),
             gauges_V,
+            signals.get("temperature"),
         )
 
     def _gauges(self, signals: Mapping[str, NDArray[np.float64]]) -> NDArray[np.float64] | None:

@@ -12,6 +12,7 @@ if TYPE_CHECKING:
 
     from strainwave._core import Rational
     from strainwave.identify.ripple_settings import RippleSettings
+    from strainwave.records.gauge_watch import WatchedGauges
     from strainwave.records.layout import Layout
     from strainwave.records.survey import Survey
 
@@ -48,6 +49,8 @@ class FilteredLog:
         Rows by the name of the status flag that they bear.
     torque_before_rms_Nm, torque_after_rms_Nm, ripple_rms_Nm : float or None
         Over the rows without a fault, Nm; None where every row has one.
+    gauges : WatchedGauges or None
+        What the watch over the gauges found; None where there was none.
     """
 
     path: Path
@@ -65,6 +68,7 @@ class FilteredLog:
     torque_before_rms_Nm: float | None = None
     torque_after_rms_Nm: float | None = None
     ripple_rms_Nm: float | None = None
+    gauges: WatchedGauges | None = None
 
     def as_dict(self) -> dict[str, Any]:
         """Plain values by name, for `--json`.
@@ -98,6 +102,7 @@ class FilteredLog:
             "torque_before_rms_Nm": self.torque_before_rms_Nm,
             "torque_after_rms_Nm": self.torque_after_rms_Nm,
             "ripple_rms_Nm": self.ripple_rms_Nm,
+            "gauge_watch": None if self.gauges is None else self.gauges.as_dict(),
             "warnings": list(self.warnings),
             "survey": {
                 **asdict(survey.timing),

@@ -20,6 +20,7 @@ from strainwave.records.checks import check_method, check_output, check_survey
 from strainwave.records.columns import find_columns
 from strainwave.records.filtered_log import FilteredLog
 from strainwave.records.findings import warnings_of
+from strainwave.records.gauge_watch import gauge_sentences, gauge_watch_of
 from strainwave.records.in_order import InOrder
 from strainwave.records.layout import build_layout
 from strainwave.records.method_setting import (
@@ -133,8 +134,13 @@ def filter_log(
     if watch is not None:
         # With what was chosen: who builds it once more gets the same.
         watch.begin(survey.rows, name, replace(setting, ripple_settings=log.ripple_settings), build)
-    rows = sample_rows(recording, layout, found, survey, progress)
-    return _filter(log, InOrder(remover), rows, watch)
+    gauge_watch = gauge_watch_of(layout, survey)
+    rows = sample_rows(recording, layout, found, survey, progress, gauge_watch)
+    log = _filter(log, InOrder(remover), rows, watch)
+    if gauge_watch is None:
+        return log
+    gauges = gauge_watch.result()
+    return replace(log, gauges=gauges, warnings=(*log.warnings, *gauge_sentences(gauges)))
 
 
 def _filter(
@@ -146,7 +152,8 @@ def _filter(
 
         def put(cleaned: Cleaned) -> None:
             if len(cleaned):
-                time_s, measured_Nm = waiting.pop(len(cleaned))
+                time_s, measured_Nm, of_gauges = waiting.pop(len(cleaned))
+                cleaned = replace(cleaned, status=cleaned.status | of_gauges)
                 tally.take(measured_Nm, cleaned)
                 if watch is not None:
                     watch.take(time_s, measured_Nm, cleaned)
@@ -173,25 +180,30 @@ def _filter(
 
 
 class _Waiting:
-    """Time and torque of the rows that a method still holds back."""
+    """Time, torque and what is said of the gauges, of the rows that a method still holds back."""
 
     def __init__(self) -> None:
-        self._parts: deque[tuple[NDArray[np.float64], NDArray[np.float64]]] = deque()
+        self._parts: deque[Rows] = deque()
 
     def push(self, rows: Rows) -> None:
         if len(rows):
-            self._parts.append((rows.log_time_s, rows.samples.torque_Nm))
+            self._parts.append(rows)
 
-    def pop(self, count: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        times, torques = [], []
+    def pop(
+        self, count: int
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.uint32]]:
+        taken = []
         while count > 0:
-            time_s, torque_Nm = self._parts.popleft()
-            times.append(time_s[:count])
-            torques.append(torque_Nm[:count])
-            if len(time_s) > count:
-                self._parts.appendleft((time_s[count:], torque_Nm[count:]))
-            count -= min(count, len(time_s))
-        return np.concatenate(times), np.concatenate(torques)
+            rows = self._parts.popleft()
+            taken.append(rows.part(slice(count)))
+            if len(rows) > count:
+                self._parts.appendleft(rows.part(slice(count, None)))
+            count -= min(count, len(rows))
+        return (
+            np.concatenate([each.log_time_s for each in taken]),
+            np.concatenate([each.samples.torque_Nm for each in taken]),
+            np.concatenate([each.gauge_status for each in taken]),
+        )
 
 
 class _Tally:

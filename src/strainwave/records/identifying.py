@@ -16,6 +16,7 @@ from strainwave.joint.ripple_filter import RippleFilter
 from strainwave.records.checks import check_survey
 from strainwave.records.columns import find_columns
 from strainwave.records.findings import warnings_of
+from strainwave.records.gauge_watch import gauge_sentences, gauge_watch_of
 from strainwave.records.gearing import gearing_of_both, gearing_of_motor, gearing_of_output
 from strainwave.records.identified_joint import columns_of, fill_joint
 from strainwave.records.identified_log import Gearing, IdentifiedLog
@@ -95,7 +96,8 @@ def identify_log(
     survey = survey_recording(recording, layout, reading.found, progress)
     check_survey(recording.source, layout, reading.found, survey)
     rated_Nm = layout.rated_torque_Nm or estimated_rated_torque_Nm(survey)
-    samples = read_excerpt(sample_rows(recording, layout, reading.found, survey))
+    gauge_watch = gauge_watch_of(layout, survey)
+    samples = read_excerpt(sample_rows(recording, layout, reading.found, survey, watch=gauge_watch))
     reference_Nm = None
     if reference is not None:
         reference_Nm = read_reference_Nm(recording, layout, reference, len(samples))
@@ -110,6 +112,7 @@ def identify_log(
     write_joint(joint_file, out)
     warnings = (
         *warnings_of(layout, survey, rated_Nm),
+        *gauge_sentences(None if gauge_watch is None else gauge_watch.result()),
         *gearing.says,
         *ripple.cannot_tell,
         *judged.says,

@@ -144,13 +144,31 @@ def parse_mapping(texts: Iterable[str]) -> dict[str, MappedColumn]:
     InputError
         If a pair cannot be read, or a key is unknown or given twice.
     """
-    mapping: dict[str, MappedColumn] = {}
-    for key, columns in parse_columns(texts, LOG_KEYS).items():
+    return gauge_by_gauge(parse_columns(texts, LOG_KEYS))
+
+
+def gauge_by_gauge(
+    mapping: Mapping[str, tuple[MappedColumn, ...]],
+) -> dict[str, MappedColumn]:
+    """Give each of the gauges a key of its own.
+
+    Parameters
+    ----------
+    mapping : mapping
+        Columns by key, from `parse_columns`.
+
+    Returns
+    -------
+    dict
+        One column a key, with `gauge_key` for each gauge.
+    """
+    found: dict[str, MappedColumn] = {}
+    for key, columns in mapping.items():
         if key == GAUGES:
-            mapping |= {gauge_key(number): each for number, each in enumerate(columns, 1)}
+            found |= {gauge_key(number): each for number, each in enumerate(columns, 1)}
         else:
-            mapping[key] = columns[0]
-    return mapping
+            found[key] = columns[0]
+    return found
 
 
 def parse_columns(texts: Iterable[str], keys: MapKeys) -> dict[str, tuple[MappedColumn, ...]]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Protocol
 
 from strainwave.records.conversion import Converter
+from strainwave.records.gauge_watch import gauge_watch_of
 from strainwave.records.signals import Rows, SampleBuilder
 from strainwave.records.survey import Survey, Surveyor
 
@@ -12,6 +13,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from strainwave.records.columns import FoundColumn
+    from strainwave.records.gauge_watch import GaugeWatch
     from strainwave.records.layout import Layout
     from strainwave.records.raw import Recording
 
@@ -66,6 +68,7 @@ def sample_rows(
     found: dict[str, FoundColumn],
     survey: Survey,
     progress: Progress = untold,
+    watch: GaugeWatch | None = None,
 ) -> Iterator[Rows]:
     """Read a recording as the samples that methods take.
 
@@ -81,6 +84,9 @@ def sample_rows(
         What it holds.
     progress : Progress
         Is told how far the work is.
+    watch : GaugeWatch, optional
+        One that has not begun, for who wants to know what it found; without, one is begun where
+        the joint file has what it needs.
 
     Yields
     ------
@@ -88,7 +94,7 @@ def sample_rows(
         Consecutive rows.
     """
     converter = Converter(layout, found)
-    builder = SampleBuilder(layout, survey)
+    builder = SampleBuilder(layout, survey, watch or gauge_watch_of(layout, survey))
     for chunk, share in recording.chunks(found):
         yield builder.take(converter.convert(chunk))
         progress("filtering", share)

@@ -8,7 +8,7 @@ import numpy as np
 
 from strainwave.errors import InputError
 from strainwave.records.conversion import LARGEST_USABLE
-from strainwave.records.mapping import QUANTITIES, MapKeys, parse_columns
+from strainwave.records.mapping import LOG_KEYS, MapKeys, gauge_by_gauge, parse_columns
 from strainwave.records.table import read_columns
 
 if TYPE_CHECKING:
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 REFERENCE: Final = "reference-torque"
 """The key of a reference sensor's column."""
 
-_KEYS: Final = MapKeys({**QUANTITIES, REFERENCE: "torque"})
+_KEYS: Final = MapKeys({**LOG_KEYS.quantities, REFERENCE: "torque"}, lists=LOG_KEYS.lists)
 _EXAMPLE: Final = "--reference tau_ref:Nm"
 
 
@@ -50,7 +50,7 @@ def parse_with_reference(
     InputError
         If something cannot be read, or the reference is given twice.
     """
-    mapping = {key: columns[0] for key, columns in parse_columns(texts, _KEYS).items()}
+    mapping = gauge_by_gauge(parse_columns(texts, _KEYS))
     mapped = mapping.pop(REFERENCE, None)
     if reference is None:
         return mapping, mapped

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from strainwave.records.conversion import Columns
+    from strainwave.records.gauge_watch import GaugeWatch
     from strainwave.records.layout import Layout
     from strainwave.records.survey import Survey
 
@@ -32,13 +33,42 @@ class Rows:
     samples : Samples
         The rows; their time counts from the recording's first stamp, so that stamps since 1970
         keep their digits.
+    gauge_status : numpy.ndarray
+        What the watch over the gauges says, bits of `strainwave.StatusFlag`, shape (rows,), uint32;
+        0 without a watch.
     """
 
     log_time_s: NDArray[np.float64]
     samples: Samples
+    gauge_status: NDArray[np.uint32]
 
     def __len__(self) -> int:
         return len(self.log_time_s)
+
+    def part(self, rows: slice) -> Rows:
+        """Take some of the rows.
+
+        Parameters
+        ----------
+        rows : slice
+            Which.
+
+        Returns
+        -------
+        Rows
+            These.
+        """
+        samples = self.samples
+        return Rows(
+            self.log_time_s[rows],
+            Samples(
+                samples.time_s[rows],
+                samples.motor_angle_rad[rows],
+                samples.torque_Nm[rows],
+                samples.expected_torque_Nm[rows],
+            ),
+            self.gauge_status[rows],
+        )
 
 
 class Unwrapping:
@@ -128,9 +158,12 @@ class SampleBuilder:
         How the recording is read.
     survey : Survey
         What it holds.
+    watch : GaugeWatch, optional
+        Makes the torque of the gauges and watches over them.
     """
 
-    def __init__(self, layout: Layout, survey: Survey) -> None:
+    def __init__(self, layout: Layout, survey: Survey, watch: GaugeWatch | None = None) -> None:
+        self._watch = watch
         self._gain = layout.motor_turns_per_turn
         self._unwrapping = Unwrapping() if survey.angle_is_wrapped else None
         self._integration = SpeedIntegration()
@@ -164,8 +197,11 @@ class SampleBuilder:
         expected_Nm = columns.expected_torque_Nm
         if expected_Nm is None:
             expected_Nm = np.zeros(len(columns))
-        samples = Samples(columns.time_s, angle_rad, columns.torque_Nm, expected_Nm)
-        rows = Rows(columns.log_time_s, samples)
+        torque_Nm, status = columns.torque_Nm, np.zeros(len(columns), np.uint32)
+        if self._watch is not None:
+            torque_Nm, status = self._watch.take(columns, angle_rad)
+        samples = Samples(columns.time_s, angle_rad, torque_Nm, expected_Nm)
+        rows = Rows(columns.log_time_s, samples, status)
         if self._acceleration is None:
             return rows
         self._held.append(rows)
@@ -195,32 +231,16 @@ class SampleBuilder:
     def _release(self, accelerations: NDArray[np.float64]) -> Rows:
         held = _joined(self._held)
         count = len(accelerations)
-        samples = held.samples
-        self._held = [
-            Rows(
-                held.log_time_s[count:],
-                Samples(
-                    samples.time_s[count:],
-                    samples.motor_angle_rad[count:],
-                    samples.torque_Nm[count:],
-                    samples.expected_torque_Nm[count:],
-                ),
-            )
-        ]
-        return Rows(
-            held.log_time_s[:count],
-            Samples(
-                samples.time_s[:count],
-                samples.motor_angle_rad[:count],
-                samples.torque_Nm[:count],
-                accelerations * self._torque_per_acceleration,
-            ),
-        )
+        self._held = [held.part(slice(count, None))]
+        ready = held.part(slice(count))
+        expected_Nm = accelerations * self._torque_per_acceleration
+        return replace(ready, samples=replace(ready.samples, expected_torque_Nm=expected_Nm))
 
 
 def _joined(parts: list[Rows]) -> Rows:
     nothing = np.empty(0)
-    listed = [*parts, Rows(nothing, Samples(nothing, nothing, nothing, nothing))]
+    none = Rows(nothing, Samples(nothing, nothing, nothing, nothing), np.empty(0, np.uint32))
+    listed = [*parts, none]
     return Rows(
         np.concatenate([part.log_time_s for part in listed]),
         Samples(
@@ -229,4 +249,5 @@ def _joined(parts: list[Rows]) -> Rows:
             np.concatenate([part.samples.torque_Nm for part in listed]),
             np.concatenate([part.samples.expected_torque_Nm for part in listed]),
         ),
+        np.concatenate([part.gauge_status for part in listed]),
     )
