@@ -301,6 +301,19 @@ def test_an_angle_from_another_zero_is_said(
     assert ended.result["gauge_watch"]["rows_disagree"] == 0
 
 
+def test_a_gauge_with_a_minus_is_not_watched_and_that_is_said(
+    tmp_path: Path, call: Call, joint: Path, station: Station
+) -> None:
+    log = write_run(tmp_path / "run.parquet", run_of(station, None))
+    ended = call(
+        *("filter", log, "--map", MAP.replace("+g2_V", "+-g2_V"), "--angle-side", "motor"),
+        *("--joint", joint, "--out", tmp_path / "clean.parquet", "--json"),
+    )
+    assert ended.code == 0, ended.err
+    assert ended.result["gauge_watch"] is None
+    assert "gauge 2: mapped with a minus" in ended.err
+
+
 def test_identify_takes_the_same_rows(
     tmp_path: Path, call: Call, joint: Path, station: Station
 ) -> None:

@@ -134,13 +134,14 @@ def filter_log(
     if watch is not None:
         # With what was chosen: who builds it once more gets the same.
         watch.begin(survey.rows, name, replace(setting, ripple_settings=log.ripple_settings), build)
-    gauge_watch = gauge_watch_of(layout, survey)
+    gauge_watch = gauge_watch_of(layout, survey, found)
     rows = sample_rows(recording, layout, found, survey, progress, gauge_watch)
     log = _filter(log, InOrder(remover), rows, watch)
-    if gauge_watch is None:
-        return log
-    gauges = gauge_watch.result()
-    return replace(log, gauges=gauges, warnings=(*log.warnings, *gauge_sentences(gauges)))
+    return replace(
+        log,
+        gauges=None if gauge_watch is None else gauge_watch.result(),
+        warnings=(*log.warnings, *gauge_sentences(layout, found, gauge_watch)),
+    )
 
 
 def _filter(

@@ -15,12 +15,16 @@ from strainwave.configuration import (
     gauge_monitor_of,
     gear_of,
 )
+from strainwave.records.mapping import is_gauge_key
 from strainwave.sensor import TorqueSensor
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from numpy.typing import NDArray
 
     from strainwave.joint import Joint
+    from strainwave.records.columns import FoundColumn
     from strainwave.records.conversion import Columns
     from strainwave.records.layout import Layout
     from strainwave.records.survey import Survey
@@ -264,7 +268,9 @@ def can_watch(joint: Joint) -> bool:
     return len(gains.gains) > 1 and bool(gains.without_gauge or gains.gauge_signals)
 
 
-def gauge_watch_of(layout: Layout, survey: Survey) -> GaugeWatch | None:
+def gauge_watch_of(
+    layout: Layout, survey: Survey, found: Mapping[str, FoundColumn]
+) -> GaugeWatch | None:
     """Begin a watch over the gauges of a recording.
 
     Parameters
@@ -273,13 +279,16 @@ def gauge_watch_of(layout: Layout, survey: Survey) -> GaugeWatch | None:
         How it is read.
     survey : Survey
         What it holds.
+    found : mapping
+        Its columns, by key.
 
     Returns
     -------
     GaugeWatch or None
-        None where no gauges are mapped, or the joint file has not what it needs.
+        None where no gauges are mapped, one is mapped with a minus (a converter has no codes for
+        it), or the joint file has not what it needs.
     """
-    if layout.chain is None or not can_watch(layout.chain.joint):
+    if layout.chain is None or not can_watch(layout.chain.joint) or _turned(found):
         return None
     joint = layout.chain.joint
     is_motor = layout.angle_side == "motor" and "angle" in layout.columns
@@ -288,26 +297,43 @@ def gauge_watch_of(layout: Layout, survey: Survey) -> GaugeWatch | None:
     return GaugeWatch(joint, survey.sample_period_s, is_motor and not is_unwrapped)
 
 
+def _turned(found: Mapping[str, FoundColumn]) -> list[str]:
+    return [key for key, each in found.items() if is_gauge_key(key) and each.sign < 0]
+
+
 def _wave_factor(joint: Joint) -> float:
     factor = gear_of(joint).wave_factor
     return factor.numerator / factor.denominator
 
 
-def gauge_sentences(found: WatchedGauges | None) -> tuple[str, ...]:
+def gauge_sentences(
+    layout: Layout, columns: Mapping[str, FoundColumn], watch: GaugeWatch | None
+) -> tuple[str, ...]:
     """Say what a person should know of the gauges.
 
     Parameters
     ----------
-    found : WatchedGauges or None
-        What the watch found; None where there was none.
+    layout : Layout
+        How the recording is read.
+    columns : mapping
+        Its columns, by key.
+    watch : GaugeWatch or None
+        From `gauge_watch_of`, after the last row.
 
     Returns
     -------
     tuple of str
-        A sentence each; empty where all gauges are sound.
+        A sentence each; empty where all gauges are sound, or nothing says how they should be.
     """
-    if found is None:
-        return ()
+    if watch is None:
+        if layout.chain is None or not can_watch(layout.chain.joint):
+            return ()
+        return (
+            f"{', '.join(_turned(columns))}: mapped with a minus, which no code of the converter is "
+            "for, so that lost gauges are not watched for: map gauges as they were recorded, here and "
+            "in `strainwave calibrate fluctuation`",
+        )
+    found = watch.result()
     says = []
     if found.lost is not None:
         says.append(_sentence_of(found.lost))

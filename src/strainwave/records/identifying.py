@@ -96,7 +96,7 @@ def identify_log(
     survey = survey_recording(recording, layout, reading.found, progress)
     check_survey(recording.source, layout, reading.found, survey)
     rated_Nm = layout.rated_torque_Nm or estimated_rated_torque_Nm(survey)
-    gauge_watch = gauge_watch_of(layout, survey)
+    gauge_watch = gauge_watch_of(layout, survey, reading.found)
     samples = read_excerpt(sample_rows(recording, layout, reading.found, survey, watch=gauge_watch))
     reference_Nm = None
     if reference is not None:
@@ -112,7 +112,7 @@ def identify_log(
     write_joint(joint_file, out)
     warnings = (
         *warnings_of(layout, survey, rated_Nm),
-        *gauge_sentences(None if gauge_watch is None else gauge_watch.result()),
+        *gauge_sentences(layout, reading.found, gauge_watch),
         *gearing.says,
         *ripple.cannot_tell,
         *judged.says,

@@ -94,7 +94,7 @@ def sample_rows(
         Consecutive rows.
     """
     converter = Converter(layout, found)
-    builder = SampleBuilder(layout, survey, watch or gauge_watch_of(layout, survey))
+    builder = SampleBuilder(layout, survey, watch or gauge_watch_of(layout, survey, found))
     for chunk, share in recording.chunks(found):
         yield builder.take(converter.convert(chunk))
         progress("filtering", share)
