@@ -20,7 +20,8 @@ from strainwave.records.checks import check_method, check_output, check_survey
 from strainwave.records.columns import find_columns
 from strainwave.records.filtered_log import FilteredLog
 from strainwave.records.findings import warnings_of
-from strainwave.records.gauge_watch import gauge_sentences, gauge_watch_of
+from strainwave.records.gauge_watch import gauge_watch_of, joined_status
+from strainwave.records.gauge_words import gauge_sentences
 from strainwave.records.in_order import InOrder
 from strainwave.records.layout import build_layout
 from strainwave.records.method_setting import (
@@ -154,7 +155,7 @@ def _filter(
         def put(cleaned: Cleaned) -> None:
             if len(cleaned):
                 time_s, measured_Nm, of_gauges = waiting.pop(len(cleaned))
-                cleaned = replace(cleaned, status=cleaned.status | of_gauges)
+                cleaned = replace(cleaned, status=joined_status(cleaned.status, of_gauges))
                 tally.take(measured_Nm, cleaned)
                 if watch is not None:
                     watch.take(time_s, measured_Nm, cleaned)

@@ -16,7 +16,8 @@ from strainwave.joint.ripple_filter import RippleFilter
 from strainwave.records.checks import check_survey
 from strainwave.records.columns import find_columns
 from strainwave.records.findings import warnings_of
-from strainwave.records.gauge_watch import gauge_sentences, gauge_watch_of
+from strainwave.records.gauge_watch import gauge_watch_of
+from strainwave.records.gauge_words import gauge_sentences
 from strainwave.records.gearing import gearing_of_both, gearing_of_motor, gearing_of_output
 from strainwave.records.identified_joint import columns_of, fill_joint
 from strainwave.records.identified_log import Gearing, IdentifiedLog
