@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from strainwave.errors import ConfigurationError
@@ -235,6 +235,17 @@ def test_friction_has_a_breakaway_above_its_running_torque():
     np.testing.assert_allclose(friction.torque_Nm(-speed, 0 * speed), -torque)
 
 
+@example(
+    inertia=1e-5,
+    stiffness=100.0,
+    damping=34.0,
+    hysteresis=0.0,
+    coulomb=0.0,
+    ripple=3.0,
+    current=0.0,
+    contact=488.0,
+    hardening=3e4,
+)
 @given(
     inertia=st.floats(1e-5, 1e-2),
     stiffness=st.floats(1e2, 3e4),

@@ -20,7 +20,7 @@ from strainwave.errors import ConfigurationError
 from strainwave.simulate.commands import Command, SpeedCommand
 from strainwave.simulate.mechanics import Flexspline
 from strainwave.simulate.motion import Drive, Motion
-from strainwave.simulate.ripple import MeshRipple
+from strainwave.simulate.ripple import LARGEST_GROWTH, MeshRipple
 from strainwave.simulate.trajectories import FloatArray, Profile
 
 State = tuple[float, float, float, float, float]
@@ -107,7 +107,8 @@ def _ripple_function(mesh: MeshRipple) -> Callable[[float, float, float], tuple[
 
     def ripple(angle: float, speed: float, load: float) -> tuple[float, float]:
         torque = slope = 0.0
-        relative_load, relative_speed = abs(load) / rated, abs(speed) / reference
+        relative_load = min(abs(load) / rated, LARGEST_GROWTH)
+        relative_speed = min(abs(speed) / reference, LARGEST_GROWTH)
         for order, amplitude, phase, load_growth, speed_growth in lines:
             size = amplitude * (1 + load_growth * relative_load + speed_growth * relative_speed)
             torque += size * math.sin(order * angle + phase)

@@ -15,13 +15,17 @@ import numpy as np
 from strainwave.simulate.checks import require_number
 from strainwave.simulate.trajectories import FloatArray
 
+LARGEST_GROWTH = 4.0
+"""Load over rated torque, and speed over the reference, at which a line's growth ends: a ripple
+that grew on with a load beyond any gear's would drive the motion to infinity."""
+
 
 @dataclass(frozen=True)
 class RippleOrder:
     """One line of the mesh ripple.
 
     Its amplitude is amplitude_Nm (1 + load_growth |torque| / rated + speed_growth |speed| /
-    reference speed).
+    reference speed), neither of them counting beyond `LARGEST_GROWTH`.
 
     Parameters
     ----------
@@ -93,8 +97,9 @@ class MeshRipple:
         ndarray, shape (n,)
             Ripple torque at the output side, Nm.
         """
-        load = np.abs(load_Nm) / self.rated_torque_Nm
+        load = np.minimum(np.abs(load_Nm) / self.rated_torque_Nm, LARGEST_GROWTH)
         speed = np.abs(motor_speed_rad_s) / self.reference_speed_rad_s
+        speed = np.minimum(speed, LARGEST_GROWTH)
         total = np.zeros(np.shape(motor_angle_rad))
         for line in self.orders:
             growth = 1.0 + line.load_growth * load + line.speed_growth * speed
