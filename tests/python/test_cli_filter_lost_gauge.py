@@ -12,6 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import strainwave as sw
+from benchmarks.faults.station import changing_load, changing_speed
 from helpers.gauge_logs import mapping_of, station_of, turns_of, write_run
 from helpers.log_files import command, write_parquet
 from helpers.watched_joint import described_joint, put, put_calibration, write_loads
@@ -164,6 +165,25 @@ def test_sound_gauges_have_the_torque_of_the_plain_chain(
     # Codes to volts and back: to the last digits of volts as large as the range.
     assert found["torque_measured_Nm"] == pytest.approx(same["torque_measured_Nm"], abs=1e-11)
     assert np.array_equal(found["status"], same["status"])
+
+
+def test_sound_gauges_in_use_are_not_suspected(joint: Path, station: Station) -> None:
+    """Speeds either way, rests and contacts that the calibration has not seen."""
+    generator = np.random.default_rng(5)
+    run = station.rotate(
+        changing_speed(generator, 120.0, 150.0),
+        120.0,
+        77,
+        contact_torque=changing_load(generator, 120.0, 60.0),
+    )
+    watch = GaugeWatch(read_joint(joint).joint, 1e-3, True)
+    watch.take(columns_part(run, slice(0, len(run.time_s))), run.motor_angle_rad)
+    assert watch.result().as_dict() == {
+        "lost": None,
+        "rows_suspected": 0,
+        "rows_insufficient": 0,
+        "rows_disagree": 0,
+    }
 
 
 def test_without_the_keys_nothing_is_watched(
