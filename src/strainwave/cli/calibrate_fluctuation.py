@@ -29,7 +29,7 @@ def fluctuation(
     fit_delay: bool = False,
     over_grid: Literal["sum", "worst"] = "sum",
     most_noise: float = 10.0,
-    without_gauge_harmonics: int | None = None,
+    without_gauge_harmonics: Whole | None = None,
     figure: Path | None = None,
     json: bool = False,
 ) -> None:
