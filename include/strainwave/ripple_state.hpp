@@ -159,7 +159,7 @@ inline Status predict(const RippleFilterConfig<Real, MaxPairs>& config,
     for (std::size_t i = 2 * pair; i < 2 * end; ++i) {
       weight += sample.h[i + 1] * sample.h[i + 1];
     }
-    for (const Real each = gained / weight; pair < end; ++pair) {
+    for (const Real each = gained / weight; pair < end && pair < MaxPairs; ++pair) {
       state.waiting_Nm2[pair] += each;
     }
   }
