@@ -18,6 +18,7 @@ from strainwave.cli.calibrate_tune import tune
 from strainwave.cli.certify import certify
 from strainwave.cli.demo import demo
 from strainwave.cli.design import design_app
+from strainwave.cli.export import export_command
 from strainwave.cli.fidelity import fidelity
 from strainwave.cli.filter import filter_command
 from strainwave.cli.identify import identify_command
@@ -55,6 +56,7 @@ calibrate_app.command(calibrate_misalignment, name="misalignment")
 app.command(calibrate_app)
 app.command(tare_command, name="tare")
 app.command(joint_app)
+app.command(export_command, name="export")
 app.command(certify)
 app.command(verify)
 

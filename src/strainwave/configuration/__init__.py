@@ -6,7 +6,11 @@ from strainwave.configuration.filters import (
     oscillator_filter_of,
     ripple_filter_of,
 )
-from strainwave.configuration.gauge_monitor import gauge_monitor_of
+from strainwave.configuration.gauge_monitor import (
+    ConsistencySettings,
+    consistency_settings_of,
+    gauge_monitor_of,
+)
 from strainwave.configuration.gear import gear_of
 from strainwave.configuration.sensor import (
     calibration_of,
@@ -17,7 +21,9 @@ from strainwave.configuration.sensor import (
 )
 
 __all__ = [
+    "ConsistencySettings",
     "calibration_of",
+    "consistency_settings_of",
     "converter_of",
     "frozen_terms_of",
     "gains_of",

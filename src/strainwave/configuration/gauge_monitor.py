@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -60,8 +61,7 @@ def gauge_monitor_of(joint: Joint, sample_period_s: float) -> _core.GaugeMonitor
         return None
     gauges = required(joint, "gauges", joint.gauges)
     low_V, high_V, step_V = _range_of(gauges)
-    detection_time_s = gains.detection_time_s or DETECTION_TIME_S
-    samples = max(3, round(detection_time_s / sample_period_s))
+    samples = _detection_samples(gains, sample_period_s)
     wave_V = conditions_of(gains)
     noise_V = gains.noise_V or 0.0
     band_V = max(BAND_NOISE * noise_V, BAND_STEPS * step_V)
@@ -78,7 +78,7 @@ def gauge_monitor_of(joint: Joint, sample_period_s: float) -> _core.GaugeMonitor
         flat_band_V=band_V,
         amplifier_zero_V=gauges.amplifier_offset_V,
         short_band_V=band_V,
-        consistency=_consistency_of(joint, gains, wave_V, samples, sample_period_s),
+        consistency=_consistency_of(joint, sample_period_s),
         residual_fluctuation_V=gains.residual_fluctuation_V or 0.0,
         without=_gains_without(gains, wave_V),
     )
@@ -141,25 +141,76 @@ def _stuck_samples(gains: Gains, step_V: float, sample_period_s: float, least: i
     return needed if needed * sample_period_s <= LONGEST_STUCK_S else 0
 
 
-def _consistency_of(
-    joint: Joint,
-    gains: Gains,
-    wave_V: NDArray[np.float64],
-    samples: int,
-    sample_period_s: float,
-) -> _core.ConsistencyCheck | None:
-    """Build the parity check, None where too little is known or there are too few gauges."""
+@dataclass(frozen=True)
+class ConsistencySettings:
+    """What holds the gauges against each other, as plain values.
+
+    Attributes
+    ----------
+    samples : int
+        This many more samples beyond the limit than within it, until a gauge is lost.
+    signal_directions : numpy.ndarray
+        Orthonormal, shape (directions, gauges); the first is that of the torque.
+    gauge_zero_V : numpy.ndarray
+        Signal of each gauge without torque, the wave taken out, shape (gauges,), V.
+    limit_V : float
+        Length of what may be left at no torque, V.
+    limit_per_V : float
+        Growth of that with the length of the torque's share.
+    fluctuation_V : numpy.ndarray
+        Rows of sine and cosine by harmonic, shape (2 harmonics, gauges), V.
+    wave_factor : Rational or int
+        Factor m of the gear.
+    delay_samples : float
+        By how many samples the gauges are behind the angle.
+    """
+
+    samples: int
+    signal_directions: NDArray[np.float64]
+    gauge_zero_V: NDArray[np.float64]
+    limit_V: float
+    limit_per_V: float
+    fluctuation_V: NDArray[np.float64]
+    wave_factor: _core.Rational | int
+    delay_samples: float
+
+
+def consistency_settings_of(joint: Joint, sample_period_s: float) -> ConsistencySettings | None:
+    """Collect what holds a joint's gauges against each other.
+
+    Parameters
+    ----------
+    joint : Joint
+        A joint with ``[gains]``.
+    sample_period_s : float
+        Time from one sample to the next, s.
+
+    Returns
+    -------
+    ConsistencySettings or None
+        None where too little is known or there are too few gauges.
+
+    Raises
+    ------
+    InputError
+        If ``[gear]`` is missing, which the wave's angle needs.
+    """
+    gains = joint.gains
+    if gains is None or not gains.gauge_signals or len(gains.gains) < 3:
+        return None
     limit_V, share = gains.consistency_limit_V, gains.consistency_limit_share
     # Without its growth the limit holds without torque alone, and sound gauges exceed it under load.
-    if not gains.gauge_signals or limit_V is None or share is None or len(gains.gains) < 3:
+    if limit_V is None or share is None:
         return None
     delay_s = 0.0
     if joint.signals is not None and joint.signals.angle_to_torque_delay_s is not None:
         delay_s = joint.signals.angle_to_torque_delay_s
-    sensitivities = gains.torque_sensitivities or (1.0,) * len(gains.gains)
-    return _core.ConsistencyCheck(
-        samples=samples,
-        signal_directions=signal_directions(sensitivities),
+    wave_V = conditions_of(gains)
+    return ConsistencySettings(
+        samples=_detection_samples(gains, sample_period_s),
+        signal_directions=signal_directions(
+            gains.torque_sensitivities or (1.0,) * len(gains.gains)
+        ),
         gauge_zero_V=np.array([signal.zero_V for signal in gains.gauge_signals]),
         limit_V=limit_V,
         limit_per_V=share,
@@ -167,6 +218,15 @@ def _consistency_of(
         wave_factor=gear_of(joint).wave_factor if len(wave_V) else 1,
         delay_samples=delay_s / sample_period_s,
     )
+
+
+def _detection_samples(gains: Gains, sample_period_s: float) -> int:
+    return max(3, round((gains.detection_time_s or DETECTION_TIME_S) / sample_period_s))
+
+
+def _consistency_of(joint: Joint, sample_period_s: float) -> _core.ConsistencyCheck | None:
+    settings = consistency_settings_of(joint, sample_period_s)
+    return None if settings is None else _core.ConsistencyCheck(**vars(settings))
 
 
 def _gains_without(gains: Gains, wave_V: NDArray[np.float64]) -> list[_core.GainsWithoutGauge]:
