@@ -48,7 +48,7 @@ inline constexpr std::uint32_t learned_block_layout =
 
 /// Goes through a block's words one after the other.
 struct BlockPlace {
-  std::uint32_t* words;
+  std::uint32_t* words = nullptr;
   std::size_t next = 0;
 
   constexpr void put(std::uint32_t word) { words[next++] = word; }
@@ -62,7 +62,7 @@ struct BlockPlace {
 };
 
 struct ConstBlockPlace {
-  const std::uint32_t* words;
+  const std::uint32_t* words = nullptr;
   std::size_t next = 0;
 
   constexpr std::uint32_t get() { return words[next++]; }

@@ -31,6 +31,7 @@ typedef double strainwave_real;
 typedef float strainwave_real;
 #endif
 
+/* NOLINTBEGIN(cppcoreguidelines-use-enum-class) - C has no other */
 /** What a function did.  Everything but STRAINWAVE_OK changed nothing. */
 enum {
   STRAINWAVE_OK = 0,
@@ -81,6 +82,7 @@ enum {
   STRAINWAVE_GAUGE_FAULT_SATURATED = 4,
   STRAINWAVE_GAUGE_FAULT_INCONSISTENT = 5
 };
+/* NOLINTEND(cppcoreguidelines-use-enum-class) */
 
 /** All that changes from sample to sample.  May lie in static memory or on a stack; not to be
     copied while an interrupt uses it. */

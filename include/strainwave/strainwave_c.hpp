@@ -23,8 +23,8 @@ namespace joint = ::STRAINWAVE_JOINT;
 
 /// What lies in a strainwave_state.
 struct Storage {
-  std::uint32_t mark;  ///< started_mark() once initialised
-  joint::State state;
+  std::uint32_t mark = 0;  ///< started_mark once initialised
+  joint::State state = {};
 };
 
 static_assert(std::is_same_v<strainwave_real, joint::Real>,
@@ -76,12 +76,14 @@ STRAINWAVE_SAME(INCONSISTENT, inconsistent);
 /// Another joint's state, or memory that was never initialised, has another mark.
 inline constexpr std::uint32_t started_mark = joint::checksum ^ 0x53574A31U;
 
+// NOLINTBEGIN(cppcoreguidelines-pro-type-reinterpret-cast) - bytes are all that C can hold
 [[nodiscard]] inline Storage* storage_of(strainwave_state* state) {
   return reinterpret_cast<Storage*>(state->bytes);
 }
 [[nodiscard]] inline const Storage* storage_of(const strainwave_state* state) {
   return reinterpret_cast<const Storage*>(state->bytes);
 }
+// NOLINTEND(cppcoreguidelines-pro-type-reinterpret-cast)
 
 /// What forbids to use a state with the other arguments; STRAINWAVE_OK where nothing does.
 [[nodiscard]] inline strainwave_result usability(const strainwave_state* state, const void* other) {
@@ -170,6 +172,7 @@ using JointKeeper = Keeper<std::remove_const_t<decltype(joint::config.filter)>>;
 
 }  // namespace strainwave::c_interface
 
+// NOLINTBEGIN(misc-definitions-in-headers) - this file is compiled once, by strainwave_joint.cpp
 extern "C" {
 
 bool strainwave_joint_is_intact(void) { return strainwave::c_interface::joint::joint_is_intact(); }
@@ -282,3 +285,4 @@ strainwave_phase strainwave_encoder_phase(strainwave_encoder* encoder, std::uint
 }
 
 }  // extern "C"
+// NOLINTEND(misc-definitions-in-headers)

@@ -6,7 +6,15 @@
 
 namespace {
 
-using namespace strainwave;
+using strainwave::Checksum;
+using strainwave::checksum_of;
+using strainwave::GearConfig;
+using strainwave::is_intact;
+using strainwave::LearnedRipple;
+using strainwave::RippleSensorConfig;
+using strainwave::take_count;
+using strainwave::TorqueSensorConfig;
+using strainwave::value_of;
 
 template <class Real>
 constexpr RippleSensorConfig<Real, 3, 4> ripple_example() {
@@ -28,25 +36,25 @@ TEST(Checksum, IsThePublishedOne) {
   // The check value of CRC-32 in the catalogues: of the nine digits in ASCII.
   Checksum checksum;
   for (const char digit : {'1', '2', '3', '4', '5', '6', '7', '8', '9'}) {
-    take(checksum, static_cast<std::uint8_t>(digit));
+    strainwave::take(checksum, static_cast<std::uint8_t>(digit));
   }
   EXPECT_EQ(value_of(checksum), 0xCBF43926U);
 }
 
 TEST(Checksum, NumbersAreTakenLowestByteFirst) {
   Checksum words;
-  take(words, std::uint32_t{0x34333231U});
-  take(words, std::uint64_t{0x3938373635ULL});
+  strainwave::take(words, std::uint32_t{0x34333231U});
+  strainwave::take(words, std::uint64_t{0x3938373635ULL});
   Checksum bytes;
   for (const unsigned byte :
        {0x31U, 0x32U, 0x33U, 0x34U, 0x35U, 0x36U, 0x37U, 0x38U, 0x39U, 0U, 0U, 0U}) {
-    take(bytes, static_cast<std::uint8_t>(byte));
+    strainwave::take(bytes, static_cast<std::uint8_t>(byte));
   }
   EXPECT_EQ(value_of(words), value_of(bytes));
   Checksum count;
   take_count(count, std::size_t{7});
   Checksum wide;
-  take(wide, std::uint64_t{7});
+  strainwave::take(wide, std::uint64_t{7});
   EXPECT_EQ(value_of(count), value_of(wide));
 }
 
@@ -70,6 +78,7 @@ template <class Config>
 std::size_t guarded_bytes(const Config& original) {
   Config config = original;
   const std::uint32_t stored = checksum_of(config);
+  // NOLINTNEXTLINE(cppcoreguidelines-pro-type-reinterpret-cast)
   auto* const bytes = reinterpret_cast<unsigned char*>(&config);
   std::size_t guarded = 0;
   for (std::size_t i = 0; i < sizeof(config); ++i) {
@@ -114,7 +123,7 @@ TYPED_TEST(GuardedConfig, EveryBitOfEveryMemberCounts) {
   EXPECT_EQ(guarded_bytes(TorqueSensorConfig<TypeParam, 2, 3>{}),
             chain_without_filter(real, 2) + oscillator);
   EXPECT_EQ(guarded_bytes(LearnedRipple<TypeParam, 3>{}),
-            count + 3 * (ratio + 4) + 2 * 6 * real + real);
+            count + 3 * (ratio + 4) + 12 * real + real);
   EXPECT_EQ(guarded_bytes(GearConfig<TypeParam>{}), 1 + ratio + 4 + real);
 }
 

@@ -8,7 +8,12 @@
 
 namespace {
 
-using namespace strainwave;
+using strainwave::BlockFault;
+using strainwave::LearnedBlock;
+using strainwave::LearnedRipple;
+using strainwave::RippleSensorConfig;
+using strainwave::RippleSensorState;
+using strainwave::TorqueSensorSample;
 
 template <class Real>
 using Config = RippleSensorConfig<Real, 1, 3>;
@@ -34,7 +39,7 @@ State<Real> taught(const Config<Real>& config) {
     const double angle_rad = 0.03 * k;
     TorqueSensorSample<1, Real> sample;
     sample.codes[0] = to_code(config.converter, static_cast<Real>(2.0 * std::cos(2 * angle_rad)));
-    sample.motor_phase = phase_from_radians(angle_rad);
+    sample.motor_phase = strainwave::phase_from_radians(angle_rad);
     sample.sequence = k;
     (void)step(config, state, sample);
   }
@@ -54,7 +59,7 @@ TYPED_TEST(LearnedBlocks, BringBackEveryBit) {
   State<TypeParam> after = initial_state(config);
   ASSERT_EQ(restore_learned(config, after, block), BlockFault::none);
   const auto kept = learned(config.filter, before.filter);
-  EXPECT_GT(absolute(kept.coefficients_Nm[0]), TypeParam(1));
+  EXPECT_GT(strainwave::absolute(kept.coefficients_Nm[0]), TypeParam(1));
   const auto again = restored(config.filter, kept);
   for (std::size_t i = 1; i < 7; ++i) {
     EXPECT_EQ(after.filter.states_Nm[i], before.filter.states_Nm[i]) << i;
@@ -83,7 +88,7 @@ TYPED_TEST(LearnedBlocks, EveryFlippedBitIsFound) {
 TYPED_TEST(LearnedBlocks, ErasedAndCutShortAreDamaged) {
   const auto config = example<TypeParam>();
   State<TypeParam> state = initial_state(config);
-  Block<TypeParam> zeros;
+  const Block<TypeParam> zeros;
   EXPECT_EQ(restore_learned(config, state, zeros), BlockFault::damaged);
   Block<TypeParam> erased;
   for (std::uint32_t& word : erased.words) {
@@ -115,7 +120,7 @@ TYPED_TEST(LearnedBlocks, OfAnotherFilterOrLayoutAreRefused) {
   pack(huge, block);
   EXPECT_EQ(restore_learned(config, state, block), BlockFault::other_filter);
 
-  block.words[1] = detail::learned_block_layout<
+  block.words[1] = strainwave::detail::learned_block_layout<
       std::conditional_t<std::is_same_v<TypeParam, float>, double, float>, 3>;
   EXPECT_EQ(restore_learned(config, state, block), BlockFault::other_format);
 }
