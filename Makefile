@@ -85,6 +85,12 @@ bench-accuracy: $(VENV)/.package ## All methods on simulated joints and real rec
 bench-faults: $(VENV)/.package ## Gauges that fail, one after the other: found, when, what is left
 	$(BIN)/python -m benchmarks.faults --out benchmarks/results
 
+.PHONY: arduino-library
+arduino-library: ## The core as an Arduino library, in build/arduino/strainwave
+	@rm -rf build/arduino
+	@mkdir -p build/arduino
+	@$(PYTHON) tools/arduino_library.py --out build/arduino/strainwave
+
 .PHONY: test
 test: ## Every test but the slow ones; all are run even when one fails
 	@$(MAKE) --no-print-directory --keep-going test-core test-compile-fail test-usage test-python

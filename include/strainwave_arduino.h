@@ -4,8 +4,7 @@
 #ifndef STRAINWAVE_ARDUINO_H
 #define STRAINWAVE_ARDUINO_H
 
-// GCC 10 says 201709 for what it has of C++20, which is enough.
-#if !defined(__cplusplus) || __cplusplus < 201709L
+#if !defined(__cplusplus) || __cplusplus < 202002L
 #error "strainwave needs C++20: set -std=gnu++20 for this board, see the export command's reference"
 #endif
 

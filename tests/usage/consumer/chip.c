@@ -1,5 +1,6 @@
 /* The registers of motor_controller.c in memory, and its interrupt called with codes and counts. */
 #include <math.h>
+#include <stddef.h>
 #include <stdio.h>
 
 #include "strainwave_joint.h"
@@ -45,8 +46,45 @@ static int expect(bool good, const char *what) {
   return good ? 0 : 1;
 }
 
-int main(void) {
+/* What each function says where it can do nothing. */
+static int refusals(void) {
+  static strainwave_state state, fresh;
+  strainwave_learned block = {{0}};
   int wrong = 0;
+  wrong += expect(strainwave_save_learned(&fresh, &block) == STRAINWAVE_NOT_STARTED, "not started");
+  wrong += expect(strainwave_clear_lost_gauge(&fresh) == STRAINWAVE_NOT_STARTED, "not started");
+  wrong += expect(strainwave_init(&state) == STRAINWAVE_OK, "starts");
+  wrong += expect(strainwave_restore_learned(&state, NULL) == STRAINWAVE_NULL_POINTER, "no block");
+  wrong += expect(strainwave_restore_learned(&state, &block) == STRAINWAVE_BLOCK_DAMAGED, "zeros");
+  wrong += expect(strainwave_save_learned(&state, &block) == STRAINWAVE_OK, "saves");
+  wrong += expect(strainwave_restore_learned(&state, &block) == STRAINWAVE_OK, "brings back");
+  block.words[1] += 1u;
+  wrong += expect(strainwave_restore_learned(&state, &block) == STRAINWAVE_BLOCK_OTHER_FORMAT,
+                  "another layout");
+  block.words[1] -= 1u;
+  block.words[3] += 1u;
+  wrong += expect(strainwave_restore_learned(&state, &block) == STRAINWAVE_BLOCK_DAMAGED, "a bit");
+  return wrong;
+}
+
+/* Angles of counts: quarters of turns either way, over the wrap, and without a scale. */
+static int angles(void) {
+  int wrong = 0;
+  strainwave_phase phase = strainwave_phase_of_counts(-1, 4u);
+  wrong += expect(phase.turns == -1 && phase.fraction == 0xC0000000u, "a quarter back");
+  phase = strainwave_phase_of_counts(9, 4u);
+  wrong += expect(phase.turns == 2 && phase.fraction == 0x40000000u, "two turns and a quarter");
+  phase = strainwave_phase_of_counts(9, 0u);
+  wrong += expect(phase.turns == 0 && phase.fraction == 0u, "counts without a scale");
+  strainwave_encoder encoder = {0, 0u, false};
+  (void)strainwave_encoder_phase(&encoder, 0x7FFFFFFEu, 4u);
+  phase = strainwave_encoder_phase(&encoder, 0x80000002u, 4u);
+  wrong += expect(phase.turns == 0x20000000 && phase.fraction == 0x80000000u, "over the wrap");
+  return wrong;
+}
+
+int main(void) {
+  int wrong = refusals() + angles();
   motor_controller_start();
   wrong += expect(chip_power_stage.ENABLE == 1u, "a sound image enables the power stage");
   wrong += expect(!joint_torque.usable, "no torque before the first sample");
