@@ -182,6 +182,16 @@ def test_flipped_bits_in_the_image_are_found_at_start_up(tmp_path: Path) -> None
         assert wrong >= 30
 
 
+def test_the_reference_s_example_compiles(tmp_path: Path) -> None:
+    page = (ROOT / "docs/reference/export-command.md").read_text(encoding="utf-8")
+    shown = re.search(r"```cpp\n(.*?)```", page, re.DOTALL)
+    assert shown
+    source = tmp_path / "example.cpp"
+    source.write_text(shown[1], encoding="utf-8")
+    compiled = _compile(source, *FREESTANDING, "-I", WRIST.parent)
+    assert compiled.returncode == 0, compiled.stderr
+
+
 def test_the_c_header_has_the_core_s_flags() -> None:
     text = (ROOT / "include/strainwave/strainwave.h").read_text(encoding="utf-8")
     flags = {
