@@ -91,6 +91,22 @@ arduino-library: ## The core as an Arduino library, in build/arduino/strainwave
 	@mkdir -p build/arduino
 	@$(PYTHON) tools/arduino_library.py --out build/arduino/strainwave
 
+.PHONY: golden
+golden: $(VENV)/.package ## The golden vectors, made anew by the host in double and float
+	$(BIN)/python -m benchmarks.golden
+
+# Once with the host's bits, and once as a compiler does it unasked: products fused with sums.
+.PHONY: firmware-golden
+firmware-golden: $(VENV)/.package ## The golden vectors on a Cortex-M4F under qemu
+	$(HEADING) "golden vectors: Cortex-M4F under qemu"
+	@tools/ensure_debian.sh $(PYTHON) firmware
+	@$(BIN)/python tools/golden_header.py tests/data/golden/golden.json \
+	    build/golden/golden_vectors.hpp
+	@tests/firmware/golden/run.sh build/golden/off build/golden -ffp-contract=off
+	@$(BIN)/python -m benchmarks.golden --compare build/golden/off/golden-answers.bin
+	@tests/firmware/golden/run.sh build/golden/fused build/golden -ffp-contract=fast >/dev/null
+	@$(BIN)/python -m benchmarks.golden --compare build/golden/fused/golden-answers.bin --fused
+
 .PHONY: test
 test: ## Every test but the slow ones; all are run even when one fails
 	@$(MAKE) --no-print-directory --keep-going test-core test-compile-fail test-usage test-python

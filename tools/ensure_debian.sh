@@ -3,6 +3,7 @@
 #
 #   tools/ensure_debian.sh PYTHON build   what it takes to make the environment and compile
 #   tools/ensure_debian.sh PYTHON test    and, besides, what the C++ tests link to
+#   tools/ensure_debian.sh PYTHON firmware   what images for a Cortex-M are built and run with
 #
 # A need is looked for by what it does, not by its package's name, so that a compiler or a Python
 # from elsewhere is as good as Debian's.
@@ -32,6 +33,12 @@ if [[ $purpose == test ]]; then
     echo '#include <gtest/gtest.h>' | "${CXX:-g++}" -E -x c++ - >/dev/null 2>&1 ||
         missing+=(libgtest-dev)
     command -v nm >/dev/null || missing+=(binutils)
+fi
+if [[ $purpose == firmware ]]; then
+    command -v arm-none-eabi-g++ >/dev/null || missing+=(gcc-arm-none-eabi)
+    echo '#include <cstdint>' | arm-none-eabi-g++ -E -x c++ - >/dev/null 2>&1 ||
+        missing+=(libstdc++-arm-none-eabi-newlib libnewlib-arm-none-eabi)
+    command -v qemu-system-arm >/dev/null || missing+=(qemu-system-arm)
 fi
 
 if ((${#missing[@]} == 0)); then
