@@ -74,8 +74,9 @@ demo: $(VENV)/.package ## Both papers and the main job on simulated joints, in d
 	$(BIN)/strainwave demo --out demo
 
 .PHONY: docs-images
-docs-images: demo ## The README's picture, made anew by the demo
+docs-images: demo ## The README's picture, made anew by the demo, and that of the torque loop
 	cp demo/before-and-after.svg docs/images/
+	$(BIN)/python examples/python/torque_loop.py --figure docs/images/torque-loop.svg
 
 .PHONY: bench-accuracy
 bench-accuracy: $(VENV)/.package ## All methods on simulated joints and real recordings, one table
@@ -105,7 +106,8 @@ firmware-golden: $(VENV)/.package ## The golden vectors on a Cortex-M4F under qe
 	@tests/firmware/golden/run.sh build/golden/off build/golden -ffp-contract=off
 	@$(BIN)/python -m benchmarks.golden --compare build/golden/off/golden-answers.bin
 	@tests/firmware/golden/run.sh build/golden/fused build/golden -ffp-contract=fast >/dev/null
-	@$(BIN)/python -m benchmarks.golden --compare build/golden/fused/golden-answers.bin --fused
+	@$(BIN)/python -m benchmarks.golden --compare build/golden/fused/golden-answers.bin \
+	    --arithmetic fused
 
 .PHONY: test
 test: ## Every test but the slow ones; all are run even when one fails

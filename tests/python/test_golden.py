@@ -143,7 +143,21 @@ def test_comparison_refuses_other_bits(
     written(tmp_path / "answers.bin", golden, samples, spoil)
     assert compared(monkeypatch, tmp_path / "answers.bin") == 1
     assert "FAILED" in capsys.readouterr().out
-    assert (compared(monkeypatch, tmp_path / "answers.bin", "--fused") == 0) == fused_passes
+    assert (
+        compared(monkeypatch, tmp_path / "answers.bin", "--arithmetic", "fused") == 0
+    ) == fused_passes
+
+
+def test_comparison_reads_double(golden, samples, tmp_path, monkeypatch, capsys):
+    rows = np.concatenate(
+        [CHAINS[name](golden["definition"], samples, np.float64).records() for name in CHAINS]
+    )
+    padded = np.zeros(rows.size, [*rows.dtype.descr, ("padding", "<u4")])
+    for name in rows.dtype.names:
+        padded[name] = rows[name]
+    padded.tofile(tmp_path / "answers.bin")
+    assert compared(monkeypatch, tmp_path / "answers.bin", "--arithmetic", "double") == 0
+    assert capsys.readouterr().out.count("same bits as the host's double") == len(CHAINS)
 
 
 def test_comparison_refuses_another_status(golden, samples, tmp_path, monkeypatch):
@@ -152,7 +166,7 @@ def test_comparison_refuses_another_status(golden, samples, tmp_path, monkeypatc
         return rows
 
     written(tmp_path / "answers.bin", golden, samples, spoil)
-    assert compared(monkeypatch, tmp_path / "answers.bin", "--fused") == 1
+    assert compared(monkeypatch, tmp_path / "answers.bin", "--arithmetic", "fused") == 1
 
 
 def test_comparison_says_when_the_image_stopped_early(tmp_path, monkeypatch, capsys):
