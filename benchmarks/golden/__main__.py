@@ -101,7 +101,7 @@ def is_good(golden: dict[str, Any], name: str, rows: NDArray[Any], arithmetic: s
     bool
         Whether they are within the tolerances.
     """
-    answers = Answers(*(np.ascontiguousarray(rows[each]) for each in rows.dtype.names[:3]))
+    answers = Answers(rows["torque_Nm"].copy(), rows["ripple_Nm"].copy(), rows["status"].copy())
     own = "double" if arithmetic == "double" else "float"
     scale = golden["definition"]["full_scale_Nm"]
     host = answers_of(golden["definition"], name, own)
@@ -110,9 +110,9 @@ def is_good(golden: dict[str, Any], name: str, rows: NDArray[Any], arithmetic: s
     from_double = float(np.max(np.abs(answers.torque_Nm - double.torque_Nm))) / scale
     others = int(np.count_nonzero(answers.status != host.status))
     found = deviations(golden, name, answers)
-    good = others == 0 and found["other_status"] == 0
-    good &= from_own <= TOLERANCES_FS[arithmetic] and from_double <= DOUBLE_TOLERANCE_FS
-    good &= found["same_bits"] or arithmetic != "float"
+    good = others + int(found["other_status"]) == 0
+    good = good and from_own <= TOLERANCES_FS[arithmetic] and from_double <= DOUBLE_TOLERANCE_FS
+    good = good and (bool(found["same_bits"]) or arithmetic != "float")
     sys.stdout.write(
         f"{name}, {arithmetic}: {'same bits as' if found['same_bits'] else 'other bits than'} the "
         f"host's {own}, at most {from_own:.2g} FS from it and {from_double:.2g} FS from its double, "

@@ -105,7 +105,7 @@ def motor_angle_rad(samples: Samples) -> NDArray[np.float64]:
     raw = samples.encoder.astype(np.uint32).astype(np.int32).astype(np.int64)
     steps = (np.diff(raw) + 2**31) % 2**32 - 2**31
     counts = raw[0] + np.concatenate([[0], np.cumsum(steps)])
-    angle = counts * (2 * np.pi / 2**16)
+    angle: NDArray[np.float64] = counts * (2 * np.pi / 2**16)
     angle[samples.angle_known == 0] = np.nan
     return angle
 

@@ -60,7 +60,7 @@ _EVENTS: Final = (
 )
 
 #: Per gauge: zero, and (order, amplitude, phase) of its wave; codes and 2^-16 turn.
-_GAUGES: Final = (
+_GAUGES: Final[tuple[dict[str, Any], ...]] = (
     {"zero": 120, "wave": ((2, 3277, 0), (4, 100, 700))},
     {"zero": -310, "wave": ((2, 3506, 16111), (4, 90, 33_100))},
     {"zero": 45, "wave": ((2, 3768, 32_695), (4, 110, 1_900))},

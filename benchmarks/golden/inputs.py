@@ -95,7 +95,7 @@ def sine(angle: Integers) -> Integers:
     """
     t = ((angle & 0xFFFF) ^ 0x8000) - 0x8000
     y = (t * (32768 - np.abs(t))) >> 13
-    return y + ((7373 * (((y * np.abs(y)) >> 15) - y)) >> 15)
+    return np.asarray(y + ((7373 * (((y * np.abs(y)) >> 15) - y)) >> 15))
 
 
 def noise(count: int, channel: int) -> Integers:
@@ -120,7 +120,7 @@ def noise(count: int, channel: int) -> Integers:
     x = (x * 0x846CA68B) & 0xFFFFFFFF
     x ^= x >> np.uint64(16)
     parts = [(x >> np.uint64(shift)) & np.uint64(0xFF) for shift in (0, 8, 16, 24)]
-    return np.sum(parts, axis=0).astype(np.int64) - 510
+    return np.asarray(np.sum(parts, axis=0).astype(np.int64) - 510)
 
 
 def motion(definition: dict[str, Any], count: int) -> tuple[Integers, Integers]:

@@ -136,7 +136,7 @@ def run_loop(
 ) -> Run:
     """Close the loop sample by sample: sensor, filter or none, PI, drive."""
     count = round(duration_s / PERIOD_S)
-    time_s = np.arange(count) * PERIOD_S
+    time_s: Array = np.arange(count, dtype=np.float64) * PERIOD_S
     wanted_Nm = wanted_torque(time_s)
     fine_s = np.arange(1, count * DRIVE_STEPS + 1) * PERIOD_S / DRIVE_STEPS
     environment_rad = np.cumsum(speed(fine_s)) * PERIOD_S / DRIVE_STEPS
