@@ -13,11 +13,8 @@ import numpy as np
 from benchmarks.golden.inputs import INFINITY_CODE, NAN_CODE
 from strainwave.calibrate.fluctuation import compensation_conditions
 from strainwave.calibrate.gains import compensating_gains
-from strainwave.calibrate.gauge_watch import (
-    fluctuation_rms,
-    gains_without_gauges,
-    signal_directions,
-)
+from strainwave.calibrate.gauge_watch import fluctuation_rms, signal_directions
+from strainwave.calibrate.lost_gauge import gains_without_each
 
 #: More than 1e5, a multiple of the distance between the samples that are kept.
 SAMPLES: Final = 102_400
@@ -83,7 +80,7 @@ def _chain() -> dict[str, Any]:
     conditions = compensation_conditions(amplitudes, phases, np.zeros(len(_GAUGES)))
     zeros = np.array([gauge["zero"] / _CODES_A_VOLT for gauge in _GAUGES])
     gains = np.array(_rounded(compensating_gains(conditions).gains))
-    sets = gains_without_gauges(conditions, harmonics=1)
+    sets, _ = gains_without_each([conditions], np.ones(len(_GAUGES)))
     without = [_rounded(each.gains) for each in sets]
     return {
         "converter": {"bits": 16, "minimum_V": -10.0, "maximum_V": 10.0, "lowest_code": -(2**15)},
@@ -111,7 +108,7 @@ def _chain() -> dict[str, Any]:
         "wave_V": _rounded(conditions),
         "gains_without": without,
         "zero_shift_V": [_rounded(float((np.array(each) - gains) @ zeros)) for each in without],
-        "residual_without_V": [round(each.residual_fluctuation, 9) for each in sets],
+        "residual_without_V": [round(fluctuation_rms(conditions, each), 9) for each in without],
     }
 
 
