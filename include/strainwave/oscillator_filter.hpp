@@ -64,20 +64,33 @@ constexpr void count_up_to(std::uint32_t& counter, std::uint32_t samples) {
   counter += samples < room ? samples : room;
 }
 
-/// Rotation of every order since the frame of the states.
+/// The output row at the present angle.  An order that is twice another one costs no cosine.
 template <class Real, std::size_t MaxOrders>
-constexpr void turns_since_frame(const OscillatorFilterConfig<Real, MaxOrders>& config,
-                                 const OscillatorFilterState<Real, MaxOrders>& state, Phase now,
-                                 CosSin<Real>* turns) {
+constexpr void output_now(const OscillatorFilterConfig<Real, MaxOrders>& config,
+                          const OscillatorFilterState<Real, MaxOrders>& state, Phase now,
+                          CosSin<Real>* output) {
   for (std::size_t a = 0; a < active_orders(config); ++a) {
-    if (config.rotation_source == RotationSource::angle) {
-      // Differences of exact phases: what one rounds down, the next rounds up; nothing drifts.
-      turns[a] = cos_sin_of_fraction<Real>(order_fraction(now, config.orders[a]) -
-                                           order_fraction(state.frame, config.orders[a]));
+    if (const std::size_t b = half_of(config, a); b < a) {
+      output[a] = doubled(output[b]);
+    } else if (config.rotation_source == RotationSource::angle) {
+      output[a] = cos_sin_of_fraction<Real>(order_fraction(now, config.orders[a]));
     } else {
-      turns[a] = cos_sin_of_radians(to_real<Real>(config.orders[a]) * state.pending_rotation_rad);
+      output[a] = turned(state.output[a], cos_sin_of_radians(to_real<Real>(config.orders[a]) *
+                                                             state.pending_rotation_rad));
     }
   }
+}
+
+/// The output row from here on, and no rotation since it.
+template <class Real, std::size_t MaxOrders>
+constexpr void take_output(const OscillatorFilterConfig<Real, MaxOrders>& config,
+                           OscillatorFilterState<Real, MaxOrders>& state,
+                           const CosSin<Real>* output) {
+  for (std::size_t a = 0; a < active_orders(config); ++a) {
+    state.output[a].cosine = output[a].cosine;
+    state.output[a].sine = output[a].sine;
+  }
+  state.pending_rotation_rad = Real(0);
 }
 
 /// Time over which the speed is smoothed before it is compared with minimum_speed_rad_s, s.
@@ -91,16 +104,24 @@ constexpr void smooth_speed(const OscillatorFilterConfig<Real, MaxOrders>& confi
   state.smoothed_speed_rad_s += share * (speed_rad_s - state.smoothed_speed_rad_s);
 }
 
+/// The highest order: what is small enough for it is so for the others.
+template <class Real, std::size_t MaxOrders>
+[[nodiscard]] constexpr Real highest_order(const OscillatorFilterConfig<Real, MaxOrders>& config) {
+  Real highest = Real(0);
+  for (std::size_t a = 0; a < active_orders(config); ++a) {
+    const Real order = to_real<Real>(config.orders[a]);
+    highest = order > highest ? order : highest;
+  }
+  return highest;
+}
+
 /// Says where an order turns over half a cycle from one sample to the next.
 template <class Real, std::size_t MaxOrders>
 [[nodiscard]] constexpr Status nyquist_status(const OscillatorFilterConfig<Real, MaxOrders>& config,
                                               Real rotation_rad) {
-  for (std::size_t a = 0; a < active_orders(config); ++a) {
-    if (absolute(to_real<Real>(config.orders[a]) * rotation_rad) > pi<Real>) {
-      return mask(StatusFlag::order_above_nyquist);
-    }
-  }
-  return 0;
+  return absolute(highest_order(config) * rotation_rad) > pi<Real>
+             ? mask(StatusFlag::order_above_nyquist)
+             : Status{0};
 }
 
 /// Takes in a phase: how far the motor has turned since the last one says how fast it turns.
@@ -124,12 +145,8 @@ constexpr Status take_phase(const OscillatorFilterConfig<Real, MaxOrders>& confi
 template <class Real, std::size_t MaxOrders>
 constexpr Status take_rotation(const OscillatorFilterConfig<Real, MaxOrders>& config,
                                OscillatorFilterState<Real, MaxOrders>& state, Real speed_rad_s) {
-  bool usable = is_finite(speed_rad_s);
-  for (std::size_t a = 0; a < active_orders(config); ++a) {
-    const Real turned_rad =
-        absolute(to_real<Real>(config.orders[a]) * (speed_rad_s * config.sample_period_s));
-    usable = usable && turned_rad <= Real(largest_rotation_rad);
-  }
+  const Real turned_rad = highest_order(config) * (speed_rad_s * config.sample_period_s);
+  const bool usable = absolute(turned_rad) <= Real(largest_rotation_rad);  // and not NaN
   if (usable) {
     state.last_speed_rad_s = speed_rad_s;
   }
@@ -140,22 +157,47 @@ constexpr Status take_rotation(const OscillatorFilterConfig<Real, MaxOrders>& co
   return usable ? nyquist_status(config, rotation_rad) : mask(StatusFlag::rotation_invalid);
 }
 
+/// Whether a magnitude reaches a limit; 0 is no limit.
+template <class Real>
+[[nodiscard]] constexpr bool is_at_least(Real limit, Real value) {
+  return limit == Real(0) || absolute(value) >= limit;
+}
+
 /// Longest rotation that waits for an update, rad.  A longer sum would lose the digits of a crawl's
 /// steps in float.
 inline constexpr float longest_pending_rotation_rad = 0.1F;
 
-/// Applies a long pending rotation without an update, so that it stays small however long samples
-/// are rejected or the motor crawls.
+/// Takes a long pending rotation into the output row without an update, so that it stays small
+/// however long samples are rejected or the motor crawls.
 template <class Real, std::size_t MaxOrders>
-constexpr void apply_long_rotation(const OscillatorFilterConfig<Real, MaxOrders>& config,
-                                   OscillatorFilterState<Real, MaxOrders>& state) {
+constexpr void take_long_rotation(const OscillatorFilterConfig<Real, MaxOrders>& config,
+                                  OscillatorFilterState<Real, MaxOrders>& state,
+                                  const CosSin<Real>* output) {
   if (absolute(state.pending_rotation_rad) > static_cast<Real>(longest_pending_rotation_rad)) {
-    CosSin<Real> turns[MaxOrders] = {};
-    turns_since_frame(config, state, Phase{}, turns);
-    rotate(active_orders(config), state, turns);
-    state.pending_rotation_rad = Real(0);
+    take_output(config, state, output);
     state.rotated_without_update = true;
   }
+}
+
+/// Carries the rotation on at the last speed over samples that never arrived, all at once, so that
+/// a long gap costs no more than a short one.
+template <class Real, std::size_t MaxOrders>
+constexpr void carry_rotation(const OscillatorFilterConfig<Real, MaxOrders>& config,
+                              OscillatorFilterState<Real, MaxOrders>& state,
+                              std::uint32_t samples) {
+  // Past the first few the phase is a guess.
+  const auto carried =
+      static_cast<Real>(samples < most_carried_samples ? samples : most_carried_samples);
+  const Real rotation_rad = carried * (state.last_speed_rad_s * config.sample_period_s);
+  if (absolute(highest_order(config) * rotation_rad) <= Real(largest_rotation_rad)) {
+    state.pending_rotation_rad += rotation_rad;
+  }
+  const Real gap_s = carried * config.sample_period_s;
+  state.smoothed_speed_rad_s += gap_s / (gap_s + static_cast<Real>(speed_smoothing_s)) *
+                                (state.last_speed_rad_s - state.smoothed_speed_rad_s);
+  CosSin<Real> output[MaxOrders] = {};
+  output_now(config, state, Phase{}, output);
+  take_long_rotation(config, state, output);
 }
 
 }  // namespace detail
@@ -166,6 +208,9 @@ template <class Real, std::size_t MaxOrders>
     const OscillatorFilterConfig<Real, MaxOrders>& config) {
   OscillatorFilterState<Real, MaxOrders> state;
   detail::reset_covariance(config, state);
+  for (CosSin<Real>& each : state.output) {
+    each = {Real(1), Real(0)};
+  }
   return state;
 }
 
@@ -176,13 +221,7 @@ constexpr void skip(const OscillatorFilterConfig<Real, MaxOrders>& config,
   detail::count_up_to(state.samples_without_update, samples);
   detail::count_up_to(state.samples_since_phase, samples);
   if (config.rotation_source == RotationSource::speed) {
-    // Past the first few the phase is a guess; bounded, so that a gap costs bounded time.
-    const std::uint32_t carried =
-        samples < detail::most_carried_samples ? samples : detail::most_carried_samples;
-    for (std::uint32_t i = 0; i < carried; ++i) {
-      (void)detail::take_rotation(config, state, state.last_speed_rad_s);
-      detail::apply_long_rotation(config, state);
-    }
+    detail::carry_rotation(config, state, samples);
   }
 }
 
@@ -194,18 +233,18 @@ inline OscillatorReading<Real> step(const OscillatorFilterConfig<Real, MaxOrders
   OscillatorReading<Real> reading;
   const bool by_angle = config.rotation_source == RotationSource::angle;
   const bool angle_known = !by_angle || sample.phase_valid;
+  const Phase& now = by_angle && angle_known ? sample.motor_phase : state.last_phase;
   if (!angle_known) {
     reading.status |= mask(StatusFlag::rotation_invalid);
     detail::count_up_to(state.samples_since_phase, 1);
   } else if (by_angle) {
     reading.status |= detail::take_phase(config, state, sample.motor_phase);
   }
-  const Phase now = angle_known ? sample.motor_phase : state.last_phase;
-  CosSin<Real> turns[MaxOrders] = {};
-  detail::turns_since_frame(config, state, now, turns);
+  CosSin<Real> output[MaxOrders] = {};
+  detail::output_now(config, state, now, output);
   for (std::size_t a = 0; a < active_orders(config); ++a) {
     reading.ripple_Nm +=
-        turns[a].cosine * state.states_Nm[2 * a] + turns[a].sine * state.states_Nm[2 * a + 1];
+        output[a].cosine * state.states_Nm[2 * a] + output[a].sine * state.states_Nm[2 * a + 1];
   }
 
   const bool torque_usable = sample.torque_valid && is_usable_torque(sample.measured_torque_Nm);
@@ -222,21 +261,23 @@ inline OscillatorReading<Real> step(const OscillatorFilterConfig<Real, MaxOrders
 
   const Real travel_rad =
       by_angle ? to_radians<Real>(now - state.frame) : state.pending_rotation_rad;
-  const bool moving =
-      (state.rotated_without_update || absolute(travel_rad) >= config.minimum_travel_rad) &&
-      absolute(state.smoothed_speed_rad_s) >= config.minimum_speed_rad_s;
+  const bool moving = (state.rotated_without_update ||
+                       detail::is_at_least(config.minimum_travel_rad, travel_rad)) &&
+                      detail::is_at_least(config.minimum_speed_rad_s, state.smoothed_speed_rad_s);
   if (!torque_usable || !expected_usable || !angle_known) {
     detail::count_up_to(state.samples_without_update, 1);
-    detail::apply_long_rotation(config, state);
+    detail::take_long_rotation(config, state, output);
   } else if (!moving) {
     reading.status |= mask(StatusFlag::at_rest);
-    detail::apply_long_rotation(config, state);
+    detail::take_long_rotation(config, state, output);
   } else {
-    detail::rotate(active_orders(config), state, turns);
-    state.frame = now;
-    state.pending_rotation_rad = Real(0);
-    reading.status |= detail::update(
-        config, state, sample.measured_torque_Nm - sample.expected_torque_Nm - reading.ripple_Nm);
+    detail::take_output(config, state, output);
+    if (by_angle) {
+      state.frame = now;
+    }
+    reading.status |=
+        detail::update(config, state, output,
+                       sample.measured_torque_Nm - sample.expected_torque_Nm - reading.ripple_Nm);
     state.samples_without_update = 0;
     state.rotated_without_update = false;
   }
@@ -247,18 +288,19 @@ inline OscillatorReading<Real> step(const OscillatorFilterConfig<Real, MaxOrders
   return reading;
 }
 
-/// The state with its pending rotation applied: x(k+1) and P(k+1) of eq. (12) and (14) after step k
-/// with RotationSource::speed.
+/// The state in the paper's frame, its pending rotation applied: x(k+1) and P(k+1) of eq. (12) and
+/// (14) after step k with RotationSource::speed.
 template <class Real, std::size_t MaxOrders>
 [[nodiscard]] constexpr OscillatorFilterState<Real, MaxOrders> predicted(
     const OscillatorFilterConfig<Real, MaxOrders>& config,
     OscillatorFilterState<Real, MaxOrders> state) {
-  if (config.rotation_source == RotationSource::speed) {
-    CosSin<Real> turns[MaxOrders] = {};
-    detail::turns_since_frame(config, state, Phase{}, turns);
-    detail::rotate(active_orders(config), state, turns);
-    state.pending_rotation_rad = Real(0);
+  CosSin<Real> output[MaxOrders] = {};
+  detail::output_now(config, state, state.frame, output);
+  detail::rotate(active_orders(config), state, output);
+  for (CosSin<Real>& each : output) {
+    each = {Real(1), Real(0)};
   }
+  detail::take_output(config, state, output);
   return state;
 }
 

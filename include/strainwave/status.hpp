@@ -59,16 +59,27 @@ constexpr void count_up(std::uint32_t& counter) {
   }
 }
 
+/// Number of the lowest bit that is set; not for 0.
+[[nodiscard]] constexpr std::size_t lowest_bit(Status status) {
+#if defined(__GNUC__)
+  return static_cast<std::size_t>(__builtin_ctz(status));
+#else
+  std::size_t bit = 0;
+  while ((status >> bit & 1U) == 0U) {
+    ++bit;
+  }
+  return bit;
+#endif
+}
+
 /// Records one sample's status.
 constexpr void record(EventCounters& counters, Status status) {
   count_up(counters.samples);
   if ((status & fault_mask) != 0U) {
     count_up(counters.faults);
   }
-  for (std::size_t bit = 0; status != 0U; ++bit, status >>= 1U) {
-    if ((status & 1U) != 0U) {
-      count_up(counters.by_bit[bit]);
-    }
+  for (; status != 0U; status &= status - 1U) {
+    count_up(counters.by_bit[lowest_bit(status)]);
   }
 }
 

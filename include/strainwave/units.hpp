@@ -9,6 +9,7 @@
 #pragma once
 
 #include <cstdint>
+#include <type_traits>
 
 #include "strainwave/arithmetic.hpp"
 
@@ -36,6 +37,12 @@ inline constexpr std::uint32_t largest_rational_part = 0x7FFFFFFFU;
 template <class Real>
 [[nodiscard]] constexpr Real to_real(Rational ratio) {
   return static_cast<Real>(ratio.numerator) / static_cast<Real>(ratio.denominator);
+}
+
+/// Whether the first is half of the second.
+[[nodiscard]] constexpr bool is_half(Rational half, Rational whole) {
+  return 2U * std::uint64_t{half.numerator} * whole.denominator ==
+         std::uint64_t{whole.numerator} * half.denominator;
 }
 
 [[nodiscard]] constexpr Rational inverse(Rational ratio) {
@@ -135,15 +142,28 @@ struct Phase {
 /// Largest angle phase_from_turns() takes, turns: 2^40 turns are 200 years at 10,000 rpm.
 inline constexpr std::int64_t largest_turns = std::int64_t{1} << 40;
 
+/// The whole part of a number within +-2^54, towards zero.  A processor without 64-bit conversions
+/// would call a library for it that computes in double; the split is exact.
+template <class Real>
+[[nodiscard]] constexpr std::int64_t whole_part(Real value) {
+  if constexpr (std::is_same_v<Real, float>) {
+    const auto high = static_cast<std::int32_t>(value * 0x1p-24F);
+    const auto low = static_cast<std::int32_t>(value - static_cast<float>(high) * 0x1p24F);
+    return (std::int64_t{high} * (std::int64_t{1} << 24)) + low;
+  } else {
+    return static_cast<std::int64_t>(value);
+  }
+}
+
 /// Phase of an angle in turns; |turns| <= largest_turns (callers check).
 template <class Real>
 [[nodiscard]] constexpr Phase phase_from_turns(Real turns) {
-  auto whole = static_cast<std::int64_t>(turns);
+  std::int64_t whole = whole_part(turns);
   if (static_cast<Real>(whole) > turns) {
     --whole;
   }
   const Real part = turns - static_cast<Real>(whole);
-  auto units = static_cast<std::uint64_t>(part * Real(4294967296.0) + Real(0.5));
+  auto units = static_cast<std::uint64_t>(whole_part(part * Real(4294967296.0) + Real(0.5)));
   if (units > 0xFFFFFFFFU) {
     ++whole;
     units = 0;
