@@ -15,7 +15,7 @@ HOST := build/host
 # cmake, ninja and the linters are those of the environment, whatever else the machine has.
 WITH_VENV := PATH="$(CURDIR)/$(BIN):$$PATH"
 
-CXX_FILES = $(shell find include bindings tests -name '*.hpp' -o -name '*.cpp')
+CXX_FILES = $(shell find include bindings firmware tests -name '*.hpp' -o -name '*.cpp')
 HEADING = @printf '\n== %s ==\n'
 
 .PHONY: help
@@ -127,6 +127,19 @@ test-compile-fail: host-build ## Misuse that must not compile, and its message
 test-usage: host-build ## An outside project on the installed core, hosted and freestanding
 	$(HEADING) "usage: the installed core, hosted and freestanding"
 	@$(CTEST) --label-regex '^usage$$'
+
+.PHONY: firmware
+firmware: $(VENV)/.requirements ## Images for Cortex-M4F, M7 and M33, in build/firmware/
+	$(HEADING) "firmware: images for Cortex-M"
+	@tools/ensure_debian.sh $(PYTHON) firmware
+	@$(WITH_VENV) cmake --log-level=WARNING -S firmware -B build/firmware -G Ninja \
+	    -DCMAKE_TOOLCHAIN_FILE="$(CURDIR)/firmware/toolchain.cmake" -DSTRAINWAVE_WERROR=ON >/dev/null
+	@$(WITH_VENV) cmake --build build/firmware --parallel $(JOBS)
+
+.PHONY: firmware-test
+firmware-test: firmware ## The images in qemu: what they do and what an update costs
+	$(HEADING) "firmware: in qemu"
+	@$(BIN)/python firmware/test_images.py build/firmware firmware/results.json
 
 .PHONY: test-python
 test-python: $(VENV)/.package ## The Python tests

@@ -3,7 +3,7 @@
 #
 #   tools/ensure_debian.sh PYTHON build   what it takes to make the environment and compile
 #   tools/ensure_debian.sh PYTHON test    and, besides, what the C++ tests link to
-#   tools/ensure_debian.sh PYTHON firmware   what images for a Cortex-M are built and run with
+#   tools/ensure_debian.sh PYTHON firmware  and, besides, a cross compiler for Cortex-M and qemu
 #
 # A need is looked for by what it does, not by its package's name, so that a compiler or a Python
 # from elsewhere is as good as Debian's.
@@ -35,9 +35,10 @@ if [[ $purpose == test ]]; then
     command -v nm >/dev/null || missing+=(binutils)
 fi
 if [[ $purpose == firmware ]]; then
-    command -v arm-none-eabi-g++ >/dev/null || missing+=(gcc-arm-none-eabi)
-    echo '#include <cstdint>' | arm-none-eabi-g++ -E -x c++ - >/dev/null 2>&1 ||
-        missing+=(libstdc++-arm-none-eabi-newlib libnewlib-arm-none-eabi)
+    if ! echo '#include <type_traits>' |
+        arm-none-eabi-g++ -mcpu=cortex-m4 -E -x c++ - >/dev/null 2>&1; then
+        missing+=(gcc-arm-none-eabi libnewlib-arm-none-eabi libstdc++-arm-none-eabi-newlib)
+    fi
     command -v qemu-system-arm >/dev/null || missing+=(qemu-system-arm)
 fi
 
