@@ -29,7 +29,7 @@ _forbidden = ("__aeabi_d", "__aeabi_f2d", "__aeabi_cd", "__aeabi_l2d", "__aeabi_
 _mathematics = {"sinf", "cosf", "sqrtf", "fmodf", "floorf", "powf", "expf", "logf", "atan2f"}
 
 
-class Mismatch(AssertionError):
+class MismatchError(AssertionError):
     """A figure that contradicts another one, or something in an image that must not be there."""
 
 
@@ -54,18 +54,20 @@ def _traced(image: Path, functions: dict[str, listing.Function]) -> tuple[float,
 
 
 def measure(image: Path) -> dict[str, float]:
-    """All figures of one subject."""
+    """Measure one subject: all its figures."""
     rows = (line.split("=") for line in emulator.run(image, "count").splitlines())
     printed = {key: int(value) for key, value in rows}
     functions = listing.functions(image)
     path = listing.reachable(functions, _start)
     wrong = _forbidden_in({f.name for f in path} | listing.symbols(image))
     if wrong:
-        raise Mismatch(f"{image.name} contains {', '.join(wrong)}")
+        raise MismatchError(f"{image.name} contains {', '.join(wrong)}")
     typical = printed["instructions_x100"] / 100
     traced, traced_cycles = _traced(image, functions)
     if abs(traced - typical) > 0.05 * typical + 20:
-        raise Mismatch(f"{image.name}: {typical} instructions by the clock, {traced} by the trace")
+        raise MismatchError(
+            f"{image.name}: {typical} instructions by the clock, {traced} by the trace"
+        )
     return {
         "instructions": round(typical, 1),
         "dearest_sound_instructions": printed["dearest_sound_instructions"],
@@ -78,7 +80,7 @@ def measure(image: Path) -> dict[str, float]:
 
 
 def over_limits(results: dict[str, dict[str, float]]) -> list[str]:
-    """What is over what it may be, in words."""
+    """Say what is over what it may be."""
     found = [
         f"{subject}: {key} is {results[subject][key]}, over {limit}"
         for (subject, key), limit in limits.items()
@@ -89,3 +91,13 @@ def over_limits(results: dict[str, dict[str, float]]) -> list[str]:
         if ratio > worst_over_typical:
             found.append(f"{subject}: the worst update takes {ratio:.2f} times the typical one")
     return found
+
+
+def grown(before: dict[str, dict[str, float]], after: dict[str, dict[str, float]]) -> list[str]:
+    """Say what costs over 2 % more than what is on record."""
+    return [
+        f"{subject}: {key} was {figures[key]:g} and is {after[subject][key]:g}"
+        for subject, figures in before.items()
+        for key in figures
+        if subject in after and after[subject][key] > 1.02 * figures[key]
+    ]

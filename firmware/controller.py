@@ -14,13 +14,13 @@ _raw_uNm2 = 1_500_000
 _noise_uNm2 = 33
 
 
-class Mismatch(AssertionError):
+class MismatchError(AssertionError):
     """The image did something else than it should."""
 
 
 def _expect(true: bool, what: str) -> None:
     if not true:
-        raise Mismatch(what)
+        raise MismatchError(what)
 
 
 def _starts(text: str) -> list[tuple[dict[str, str], list[dict[str, int]]]]:
@@ -35,7 +35,7 @@ def _starts(text: str) -> list[tuple[dict[str, str], list[dict[str, int]]]]:
 
 
 def check(image: Path) -> str:
-    """Runs the image through its four starts; says in one line what it showed."""
+    """Run the image through its four starts; say in one line what it showed."""
     text = emulator.run(image)
     starts = _starts(text)
     heads = [head for head, _ in starts]

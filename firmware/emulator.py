@@ -24,7 +24,7 @@ def _command(image: Path, argument: str) -> list[str]:
 
 
 def run(image: Path, argument: str = "", options: tuple[str, ...] = ()) -> str:
-    """What an image prints until it ends with exit code 0."""
+    """Run an image; what it prints until it ends with exit code 0."""
     try:
         done = subprocess.run(
             [*_command(image, argument), *options],
@@ -44,7 +44,7 @@ def run(image: Path, argument: str = "", options: tuple[str, ...] = ()) -> str:
 
 
 def executed(image: Path, log: Path) -> list[int]:
-    """Addresses of all instructions executed in a short run, one after the other."""
+    """List the addresses of all instructions executed in a short run, one after the other."""
     run(image, "trace", ("-singlestep", "-d", "exec,nochain", "-D", str(log)))
     text = log.read_text()
     log.unlink()

@@ -24,12 +24,12 @@ class Function:
 
 
 def symbols(image: Path) -> set[str]:
-    """Names of all symbols in an image."""
+    """List the names of all symbols in an image."""
     return {line.split()[-1] for line in _tool("nm", str(image)).splitlines()}
 
 
 def functions(image: Path) -> dict[str, Function]:
-    """All functions of an image by name."""
+    """Read all functions of an image, by name."""
     sizes = {}
     for line in _tool("nm", "-S", str(image)).splitlines():
         parts = line.split()
@@ -51,7 +51,7 @@ def functions(image: Path) -> dict[str, Function]:
 
 
 def reachable(all_functions: dict[str, Function], start: str) -> list[Function]:
-    """A function and all that it can call."""
+    """Find a function and all that it can call."""
     todo, seen = [start], set()
     while todo:
         name = todo.pop()

@@ -20,7 +20,7 @@ def _version(tool: str) -> str:
 
 
 def main(build: Path, results_file: Path) -> int:
-    """Everything there is to check; the exit code."""
+    """Check all there is to check; the exit code."""
     with ThreadPoolExecutor(max_workers=2) as pool:
         shown = [
             pool.submit(controller.check, build / f"controller-{b}.elf") for b in controller.boards
@@ -32,7 +32,7 @@ def main(build: Path, results_file: Path) -> int:
             for board, line in zip(controller.boards, shown, strict=True):
                 print(f"{board}: {line.result()}")
             results = {s: m.result() for s, m in zip(budgets.subjects, measured, strict=True)}
-        except (controller.Mismatch, budgets.Mismatch, emulator.ImageError) as caught:
+        except (controller.MismatchError, budgets.MismatchError, emulator.ImageError) as caught:
             print(f"firmware: {caught}", file=sys.stderr)
             return 1
     for subject, figures in results.items():
@@ -50,10 +50,16 @@ def main(build: Path, results_file: Path) -> int:
         "subjects": results,
         "over_limits": budgets.over_limits(results),
     }
+    before = json.loads(results_file.read_text()) if results_file.exists() else {}
     results_file.write_text(json.dumps(record, indent=2) + "\n")
     for line in record["over_limits"]:
         print(f"over its limit: {line}")
-    return 0
+    if before.get("compiler") != record["compiler"]:
+        return 0
+    dearer = budgets.grown(before["subjects"], results)
+    for line in dearer:
+        print(f"dearer than on record: {line}. Commit {results_file} if that is meant")
+    return 1 if dearer else 0
 
 
 if __name__ == "__main__":

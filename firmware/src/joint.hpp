@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file joint.hpp
-/// The joint of the images: four gauges, three orders with load and speed terms, misalignment.
+/// The joint of the images: four gauges, three orders, load and speed terms, misalignment.
 ///
 /// What `strainwave export` writes for a joint file takes this file's place: a constant `sensor`.
 #pragma once
@@ -10,6 +10,9 @@
 namespace joint {
 
 inline constexpr std::size_t gauge_count = 4;
+/// Orders 2, 4 and 6; the first of them grows with load and speed.  All of the capacity is in use,
+/// so that the compiler can write out the filter's loops.
+inline constexpr std::size_t pairs = 5;
 inline constexpr std::uint32_t sample_rate_Hz = 8000;
 inline constexpr std::uint32_t counts_per_turn = 16384;
 /// Amplitude of the wave's first harmonic at a gauge, V.  Gauge j stands at (j - 1) 45 degrees, so
@@ -20,8 +23,8 @@ inline constexpr float torque_Nm_per_V = 10.0F;  ///< of one gauge
 /// Once per output turn, from a commissioning run.
 inline constexpr strainwave::FrozenTerm<float> misalignment = {{1, 100}, 0.3F, 0.2F};
 
-using SensorConfig = strainwave::RippleSensorConfig<float, gauge_count, 9>;
-using SensorState = strainwave::RippleSensorState<float, gauge_count, 9>;
+using SensorConfig = strainwave::RippleSensorConfig<float, gauge_count, pairs>;
+using SensorState = strainwave::RippleSensorState<float, gauge_count, pairs>;
 using Sample = strainwave::TorqueSensorSample<gauge_count, float>;
 
 /// The watch: gauges without noise in their converter's last bits would be stuck, so that the check
@@ -70,9 +73,9 @@ constexpr SensorConfig made_up_sensor() {
   config.filter.order_count = 3;
   for (std::uint32_t a = 0; a < 3; ++a) {
     config.filter.orders[a].order = {2 * (a + 1), 1};
-    config.filter.orders[a].with_load = true;
-    config.filter.orders[a].with_speed = true;
   }
+  config.filter.orders[0].with_load = true;
+  config.filter.orders[0].with_speed = true;
   config.filter.frozen_count = 1;
   config.filter.frozen[0] = misalignment;
   config.sample_period_s = 1.0F / static_cast<float>(sample_rate_Hz);

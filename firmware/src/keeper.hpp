@@ -15,7 +15,7 @@
 
 namespace keeper {
 
-using Learned = strainwave::LearnedRipple<float, 9>;
+using Learned = strainwave::LearnedRipple<float, joint::pairs>;
 
 struct Block {
   std::uint32_t mark;

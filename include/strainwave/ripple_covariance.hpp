@@ -9,6 +9,7 @@
 #pragma once
 
 #include <cstddef>
+#include <type_traits>
 
 #include "strainwave/arithmetic.hpp"
 
@@ -38,6 +39,13 @@ template <class Real, std::size_t MaxPairs>
   return p.lower + j * (2 * RippleCovariance<Real, MaxPairs>::max_coefficients - j - 1) / 2;
 }
 
+/// Calls with the number of coefficients: as a constant where all of the capacity is in use, so
+/// that the compiler can write out the loops.
+template <std::size_t Capacity, class Call>
+constexpr auto with_count(std::size_t count, const Call& call) {
+  return count == Capacity ? call(std::integral_constant<std::size_t, Capacity>{}) : call(count);
+}
+
 /// Uncorrelated coefficients of one variance.
 template <class Real, std::size_t MaxPairs>
 constexpr void set_uncorrelated(RippleCovariance<Real, MaxPairs>& p, Real variance_Nm2) {
@@ -47,9 +55,11 @@ constexpr void set_uncorrelated(RippleCovariance<Real, MaxPairs>& p, Real varian
   }
 }
 
+// Count: std::size_t, or a std::integral_constant of it.
+
 /// L' h of the coefficients, T left out.
-template <class Real, std::size_t MaxPairs>
-constexpr void project(const RippleCovariance<Real, MaxPairs>& p, std::size_t count, const Real* h,
+template <class Real, std::size_t MaxPairs, class Count>
+constexpr void project(const RippleCovariance<Real, MaxPairs>& p, Count count, const Real* h,
                        Real* projected) {
   for (std::size_t j = 0; j < count; ++j) {
     const Real* const column = column_of(p, j);
@@ -74,14 +84,17 @@ template <class Real, std::size_t MaxPairs>
 
 /// Adds to the variance of one coefficient.  Agee and Turner's rank-one change of the factors, from
 /// the coefficient's own column on.
-template <class Real, std::size_t MaxPairs>
-constexpr void add_variance(RippleCovariance<Real, MaxPairs>& p, std::size_t count, std::size_t i,
+template <class Real, std::size_t MaxPairs, class Count>
+constexpr void add_variance(RippleCovariance<Real, MaxPairs>& p, Count count, std::size_t i,
                             Real variance_Nm2) {
   Real rest[RippleCovariance<Real, MaxPairs>::max_coefficients] = {};
   Real rest_of_torque = Real(0);
   rest[i] = Real(1);
   Real weight = variance_Nm2;
-  for (std::size_t j = i; j < count; ++j) {
+  for (std::size_t j = 0; j < count; ++j) {
+    if (j < i) {
+      continue;  // not started at i, so that each column's code has constant places
+    }
     const Real pivot = rest[j];
     const Real before = p.variances_Nm2[j];
     const Real after = before + weight * pivot * pivot;
@@ -121,9 +134,9 @@ constexpr void scale_deviation(RippleCovariance<Real, MaxPairs>& p, std::size_t 
 
 /// Bierman's update with a measurement T + h'c of variance R, h given as `projected`.  Gains come
 /// out T first; the measurement's own variance, h'P h + R, is returned.
-template <class Real, std::size_t MaxPairs>
-constexpr Real measure(RippleCovariance<Real, MaxPairs>& p, std::size_t count,
-                       const Real* projected, Real noise_Nm2, Real* gains) {
+template <class Real, std::size_t MaxPairs, class Count>
+constexpr Real measure(RippleCovariance<Real, MaxPairs>& p, Count count, const Real* projected,
+                       Real noise_Nm2, Real* gains) {
   Real* const coefficient_gains = gains + 1;
   Real torque_gain = p.torque_variance_Nm2;
   Real variance = noise_Nm2 + p.torque_variance_Nm2;

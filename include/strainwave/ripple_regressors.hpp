@@ -19,8 +19,16 @@ struct Factors {
 };
 
 [[nodiscard]] constexpr bool has_factor(const RippleOrder& order, std::size_t factor) {
-  const bool used[4] = {true, order.with_load, order.with_speed, order.with_direction};
-  return used[factor];
+  switch (factor) {
+    case 0:
+      return true;
+    case 1:
+      return order.with_load;
+    case 2:
+      return order.with_speed;
+    default:
+      return order.with_direction;
+  }
 }
 
 template <class Real, std::size_t MaxPairs>

@@ -141,7 +141,7 @@ struct RippleIntake {
   Real rotation_rad = Real(0);  ///< since the last sample that was learned from
   Real rest_Nm = Real(0);       ///< what is left for T: measured less expected less all ripple
   Real expected_torque_Nm = Real(0);
-  Regressors<Real, MaxPairs> regressors = {};
+  Regressors<Real, MaxPairs> regressors;
 };
 
 /// Sums of intervals end where single ones do: an infinite one would leave no speed.

@@ -69,8 +69,8 @@ struct Regressors {
 
   std::size_t order_count = 0;
   std::size_t state_count = 1;
-  CosSin<Real> waves[MaxPairs] = {};  ///< of each order
-  Real h[max_states] = {};
+  CosSin<Real> waves[MaxPairs];  ///< of each order
+  Real h[max_states];
 };
 
 template <class Real, std::size_t MaxPairs>
@@ -136,6 +136,23 @@ template <class Real, std::size_t MaxPairs>
                          : Real(0);
 }
 
+/// Gives one coefficient its process noise.  Returns whether its variance had to be limited: that
+/// acts where a pair is hardly seen, as a load pair at constant load; before the noise, so that a
+/// filter which has seen nothing yet is not said to be limited.
+template <class Real, std::size_t MaxPairs, class Count>
+inline bool give_noise(const RippleFilterConfig<Real, MaxPairs>& config,
+                       RippleCovariance<Real, MaxPairs>& p, Count count, std::size_t i,
+                       Real noise_Nm2) {
+  const Real limit = config.initial_amplitude_Nm * config.initial_amplitude_Nm;
+  const Real variance = variance_of(p, i);
+  const bool limited = variance > limit;
+  if (limited) {
+    scale_deviation(p, count, i, square_root(limit / variance));
+  }
+  add_variance(p, count, i, noise_Nm2);
+  return limited;
+}
+
 /// Process noise of the torque for an interval, and of the coefficients for a rotation.  An order's
 /// is shared among its pairs, so that further terms do not shorten its memory.  One pair in turn is
 /// given what it has gained since its last turn: the sum is the same, and a sample costs one change
@@ -163,22 +180,16 @@ inline Status predict(const RippleFilterConfig<Real, MaxPairs>& config,
       state.waiting_Nm2[pair] += each;
     }
   }
-  const std::size_t count = sample.state_count - 1;
   state.next_pair = state.next_pair + 1 < pair ? state.next_pair + 1 : 0;
-  Status status = 0;
-  for (std::size_t i = 2 * state.next_pair; i < 2 * state.next_pair + 2; ++i) {
-    // It acts where a pair is hardly seen, as a load pair at constant load; before the noise, so
-    // that a filter which has seen nothing yet is not said to be limited.
-    const Real limit = config.initial_amplitude_Nm * config.initial_amplitude_Nm;
-    const Real variance = variance_of(state.covariance, i);
-    if (variance > limit) {
-      scale_deviation(state.covariance, count, i, square_root(limit / variance));
-      status = mask(StatusFlag::variance_limited);
-    }
-    add_variance(state.covariance, count, i, state.waiting_Nm2[state.next_pair]);
-  }
+  const std::size_t i = 2 * state.next_pair;
+  const Real noise_Nm2 = state.waiting_Nm2[state.next_pair];
+  const bool limited = with_count<2 * MaxPairs>(sample.state_count - 1, [&](auto count) {
+    const bool first = give_noise(config, state.covariance, count, i, noise_Nm2);
+    const bool second = give_noise(config, state.covariance, count, i + 1, noise_Nm2);
+    return first || second;
+  });
   state.waiting_Nm2[state.next_pair] = Real(0);
-  return status;
+  return limited ? mask(StatusFlag::variance_limited) : Status{0};
 }
 
 /// What an update found and did, for diagnosis, for likelihoods and for the smoother.
@@ -216,15 +227,14 @@ template <class Real, std::size_t MaxPairs>
 /// with the square of the excess.  At rest T alone is updated,
 ///     P <- P - g (P h)' - (P h) g' + s g g',  g = [P h / s of T; 0],
 /// the covariance of exactly this gain: T's row as always, the coefficients' block untouched.
-template <class Real, std::size_t MaxPairs>
-constexpr Innovation<Real, MaxPairs> update(const RippleFilterConfig<Real, MaxPairs>& config,
-                                            RippleFilterState<Real, MaxPairs>& state,
-                                            const Regressors<Real, MaxPairs>& sample,
-                                            Real innovation_Nm, bool moving) {
+template <class Real, std::size_t MaxPairs, class Count>
+constexpr Innovation<Real, MaxPairs> update_of(const RippleFilterConfig<Real, MaxPairs>& config,
+                                               RippleFilterState<Real, MaxPairs>& state,
+                                               const Regressors<Real, MaxPairs>& sample,
+                                               Count count, Real innovation_Nm, bool moving) {
   RippleCovariance<Real, MaxPairs>& p = state.covariance;
-  const std::size_t count = sample.state_count - 1;
   const Real noise_Nm2 = config.torque_noise_Nm * config.torque_noise_Nm;
-  Real projected[RippleCovariance<Real, MaxPairs>::max_coefficients] = {};
+  Real projected[RippleCovariance<Real, MaxPairs>::max_coefficients];
   project(p, count, sample.h + 1, projected);
   Real variance_Nm2 = noise_Nm2 + p.torque_variance_Nm2;
   Real torque_covariance_Nm2 = p.torque_variance_Nm2;
@@ -262,6 +272,16 @@ constexpr Innovation<Real, MaxPairs> update(const RippleFilterConfig<Real, MaxPa
   const Real left = Real(1) - gain;
   p.torque_variance_Nm2 = left * left * p.torque_variance_Nm2 + gain * gain * noise_Nm2;
   return result;
+}
+
+template <class Real, std::size_t MaxPairs>
+constexpr Innovation<Real, MaxPairs> update(const RippleFilterConfig<Real, MaxPairs>& config,
+                                            RippleFilterState<Real, MaxPairs>& state,
+                                            const Regressors<Real, MaxPairs>& sample,
+                                            Real innovation_Nm, bool moving) {
+  return with_count<2 * MaxPairs>(sample.state_count - 1, [&](auto count) {
+    return update_of(config, state, sample, count, innovation_Nm, moving);
+  });
 }
 
 /// Follows the scale of the innovations, per travelled angle, so that no change of it locks out.

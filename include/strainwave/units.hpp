@@ -218,6 +218,13 @@ template <class Real>
   return {static_cast<std::int64_t>(turns), a.fraction - b.fraction};
 }
 
+/// A whole number as Real; the short way where it fits in 32 bits, with the same result.
+template <class Real>
+[[nodiscard]] constexpr Real whole_to_real(std::int64_t value) {
+  const auto narrow = static_cast<std::int32_t>(value);
+  return narrow == value ? static_cast<Real>(narrow) : static_cast<Real>(value);
+}
+
 /// The angle in turns; exact while |turns| stays below 2^20 in double, meant for differences in
 /// float.
 template <class Real>
@@ -225,7 +232,7 @@ template <class Real>
   // A fraction in the upper half counts down from the next turn, so that small negative
   // differences keep all their digits in float.
   const std::int64_t nearest = phase.turns + (phase.fraction >= 0x80000000U ? 1 : 0);
-  return static_cast<Real>(nearest) +
+  return whole_to_real<Real>(nearest) +
          static_cast<Real>(static_cast<std::int32_t>(phase.fraction)) / Real(4294967296.0);
 }
 
@@ -234,12 +241,31 @@ template <class Real>
   return to_turns<Real>(phase) * two_pi<Real>;
 }
 
+/// order_fraction() by 32-bit divisions, where turns and both parts of the order are short enough.
+[[nodiscard]] constexpr std::uint32_t short_order_fraction(std::int32_t turns,
+                                                           std::uint32_t fraction, Order order) {
+  const auto denominator = static_cast<std::int32_t>(order.denominator);
+  std::int32_t rest = turns % denominator;
+  rest += rest < 0 ? denominator : 0;
+  // Long division in two digits of 16 bits; each dividend is below denominator x 2^16.
+  const std::uint32_t upper = (static_cast<std::uint32_t>(rest) << 16U) | (fraction >> 16U);
+  const std::uint32_t high = upper / order.denominator;
+  const std::uint32_t lower = ((upper - high * order.denominator) << 16U) | (fraction & 0xFFFFU);
+  const std::uint32_t low = lower / order.denominator;
+  const std::uint32_t remainder = lower - low * order.denominator;
+  return ((high << 16U) + low) * order.numerator + remainder * order.numerator / order.denominator;
+}
+
 /// Phase of an order, as a fraction of its cycle in units of 2^-32: order x angle, modulo one.
 /// Exact to the unit for every order and every number of turns, because only whole numbers are
 /// multiplied and divided.  1/R is an order like any other.
 [[nodiscard]] constexpr std::uint32_t order_fraction(Phase phase, Order order) {
   if (order.denominator <= 1) {  // 0 is no ratio, which is_valid() says; it must not divide
     return phase.fraction * order.numerator;  // whole cycles drop out modulo 2^32
+  }
+  const auto short_turns = static_cast<std::int32_t>(phase.turns);
+  if (order.denominator <= 0xFFFFU && order.numerator <= 0xFFFFU && short_turns == phase.turns) {
+    return short_order_fraction(short_turns, phase.fraction, order);
   }
   const auto denominator = static_cast<std::int64_t>(order.denominator);
   std::int64_t turns = phase.turns % denominator;
