@@ -6,7 +6,7 @@ from pathlib import Path
 import emulator
 
 boards = ("mps2-an386", "mps2-an500", "mps2-an505")
-_learned_at_each_start = ["nothing", "restored", "restored", "corrupted"]
+_learned_at_each_start = ["nothing", "restored", "restored", "refused"]
 _bites_at_each_start = [0, 0, 1, 1]
 # Ripple of 1.6 and 0.6 Nm and misalignment of 0.36 Nm have a mean square of 1.53 Nm^2, the noise of
 # the gauges' sum one of 3e-5 Nm^2.
@@ -44,7 +44,11 @@ def check(image: Path) -> str:
     _expect(learned == _learned_at_each_start, f"found at the starts: {learned}")
     bites = [int(head["watchdog_bites"]) for head in heads]
     _expect(bites == _bites_at_each_start, f"the watchdog's bites at the starts: {bites}")
-    first, restored, again, corrupted = (rows for _, rows in starts)
+    first, restored, again, refused = (rows for _, rows in starts)
+    _expect(
+        refused.pop() == {"spoilt_joint_started": 0, "samples_after": 0},
+        f"no start with a spoilt joint:\n{text}",
+    )
     settled_uNm2 = first[-1]["mean_square_uNm2"]
     _expect(
         _noise_uNm2 / 2 < settled_uNm2 < 2 * _noise_uNm2, f"error once learned: {settled_uNm2} uNm2"
@@ -53,8 +57,8 @@ def check(image: Path) -> str:
     cold_uNm2, warm_uNm2 = first[0]["mean_square_uNm2"], restored[0]["mean_square_uNm2"]
     _expect(10 * warm_uNm2 < cold_uNm2 < _raw_uNm2 / 20, f"{cold_uNm2=} {warm_uNm2=}")
     _expect(restored == again, "the same coefficients restored twice, the same torque")
-    _expect(corrupted == first[: len(corrupted)], "without its block as at the very first start")
+    _expect(refused == first[: len(refused)], "without its block as at the very first start")
     return (
         f"mean square error after 0.25 s: {cold_uNm2 * 1e-6:.2g} Nm2 cold, "
-        f"{warm_uNm2 * 1e-6:.2g} Nm2 restored; a dead interrupt and a corrupted block were caught"
+        f"{warm_uNm2 * 1e-6:.2g} Nm2 restored; a dead interrupt, a spoilt block and a spoilt joint were caught"
     )

@@ -7,7 +7,9 @@
 ///   1  a cold start: learns, saves, resets itself
 ///   2  goes on with what it learned; then its sampled interrupt dies, and the watchdog bites
 ///   3  goes on again; then a byte of the saved block is spoilt, and it resets itself
-///   4  finds the block corrupted and starts from nothing
+///   4  refuses the block and starts from nothing; then a bit of the joint's configuration is
+///   spoilt,
+///      and a start with it is refused
 
 #include <cstdint>
 
@@ -37,10 +39,8 @@ const char* text_of(keeper::Found found) {
       return "restored";
     case keeper::Found::nothing:
       return "nothing";
-    case keeper::Found::corrupted:
-      return "corrupted";
     default:
-      return "of another joint";
+      return "refused";
   }
 }
 
@@ -90,6 +90,24 @@ void work_until(std::uint32_t samples, Watchdog& watchdog) {
   }
 }
 
+/// The boards' code memory is RAM, so that a bit of a constant can be turned over.
+bool starts_with_spoilt_joint() {
+  const auto place = reinterpret_cast<std::uintptr_t>(&joint::sensor.calibration.gain_Nm_per_V);
+  reg(place) = reg(place) ^ 0x10U;
+  __asm volatile("dsb" ::: "memory");
+  const bool started = sampling::start().joint_intact;
+  const std::uint32_t samples = sampling::report().samples;
+  for (std::uint32_t wait = 0; wait < 1000000; ++wait) {
+    __asm volatile("");
+  }
+  console::put("spoilt_joint_started=");
+  console::put(std::uint32_t{started});
+  console::put(" samples_after=");
+  console::put(sampling::report().samples - samples);
+  console::put("\n");
+  return started;
+}
+
 }  // namespace
 
 /// The watchdog's first expiry.  A product takes its power stage off here; the reset follows.
@@ -105,13 +123,13 @@ int main() {
   }
   ++lives.starts;
   console::open();
-  const keeper::Found found = sampling::start();
+  const sampling::Start found = sampling::start();
   Watchdog watchdog;
   watchdog.start(watchdog_ms);
   console::put("start=");
   console::put(lives.starts);
   console::put(" learned=");
-  console::put(text_of(found));
+  console::put(text_of(found.learned));
   console::put(" watchdog_bites=");
   console::put(lives.bites);
   console::put("\n");
@@ -126,10 +144,10 @@ int main() {
       live_on_without_samples(watchdog);
     case 3:
       work_until(second / 4, watchdog);
-      keeper::block.learned[sizeof(keeper::block.learned) / 2] ^= 0x10U;
+      keeper::block.words[keeper::Block::size / 2] ^= 0x10U;
       reset();
     default:
       work_until(second / 4, watchdog);
-      return 0;
+      return starts_with_spoilt_joint() ? 1 : 0;
   }
 }

@@ -57,21 +57,25 @@ extern "C" [[gnu::flatten]] void systick_handler() {
 
 namespace sampling {
 
-keeper::Found start() {
+Start start() {
+  if (!strainwave::is_intact(joint::checksum, joint::sensor)) {
+    break_down();
+    return {};
+  }
   state = initial_state(joint::sensor);
   const keeper::Found found = keeper::restore(state);
   reg(board::systick_reload) = board::clock_Hz / joint::sample_rate_Hz - 1;
   reg(board::systick_value) = 0;
   reg(board::systick_control) = 7;  // the processor's clock, with interrupt
-  return found;
+  return {true, found};
 }
 
 Report report() {
   return consistent<Report>([] { return now; });
 }
 
-keeper::Learned learned() {
-  return consistent<keeper::Learned>(
+strainwave::LearnedRipple<float, joint::pairs> learned() {
+  return consistent<strainwave::LearnedRipple<float, joint::pairs>>(
       [] { return strainwave::learned(joint::sensor.filter, state.filter); });
 }
 

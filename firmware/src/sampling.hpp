@@ -21,14 +21,20 @@ struct Report {
   strainwave::Status status = 0;
 };
 
-/// Sets the chain up and starts the interrupt; says what became of the coefficients kept.
-keeper::Found start();
+/// What the start found.
+struct Start {
+  bool joint_intact = false;  ///< false: nothing is sampled, and there is no torque
+  keeper::Found learned = keeper::Found::nothing;
+};
+
+/// Checks the joint's configuration in memory, sets the chain up and starts the interrupt.
+Start start();
 
 /// A consistent copy: taken again where the interrupt came in between.
 Report report();
 
 /// What the filter has learned, likewise.
-keeper::Learned learned();
+strainwave::LearnedRipple<float, joint::pairs> learned();
 
 /// Stops the timer, as a fault of it would: for the watchdog's test.
 void break_down();

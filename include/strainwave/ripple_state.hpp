@@ -171,12 +171,13 @@ inline Status predict(const RippleFilterConfig<Real, MaxPairs>& config,
   std::size_t pair = 0;
   for (std::size_t a = 0; a < sample.order_count; ++a) {
     const Real gained = gained_variance(config, state, sample, a, rotation_rad);
-    const std::size_t end = pair + pairs_of(config.orders[a]);
+    const std::size_t its_end = pair + pairs_of(config.orders[a]);
+    const std::size_t end = its_end < MaxPairs ? its_end : MaxPairs;
     Real weight = Real(0);
     for (std::size_t i = 2 * pair; i < 2 * end; ++i) {
       weight += sample.h[i + 1] * sample.h[i + 1];
     }
-    for (const Real each = gained / weight; pair < end && pair < MaxPairs; ++pair) {
+    for (const Real each = gained / weight; pair < end; ++pair) {
       state.waiting_Nm2[pair] += each;
     }
   }
