@@ -281,11 +281,11 @@ TYPED_TEST(RippleCovarianceOf, TwoThatCannotBeToldApartKeepTheirSign) {
   Real projected[2] = {};
   Real gains[3] = {};
   for (int k = 0; k < 1000; ++k) {
-    strainwave::detail::project(p, 2, h, projected);
-    (void)strainwave::detail::measure(p, 2, projected, Real(1e-4), gains);
+    strainwave::detail::project(p, std::size_t{2}, h, projected);
+    (void)strainwave::detail::measure(p, std::size_t{2}, projected, Real(1e-4), gains);
   }
   EXPECT_EQ(p.torque_variance_Nm2, Real(0));
-  strainwave::detail::project(p, 2, h, projected);
+  strainwave::detail::project(p, std::size_t{2}, h, projected);
   double sum = 0.0;
   for (std::size_t j = 0; j < 2; ++j) {
     ASSERT_GT(p.variances_Nm2[j], Real(0));

@@ -131,7 +131,7 @@ def state_bytes(filter_name: str, gauges: int, capacity: int, real_bytes: int) -
     if filter_name == "ripple":
         reals, fixed = 2 * capacity**2 + 8 * capacity, 432 + 58 * real_bytes
     else:
-        reals, fixed = 2 * capacity**2 + 3 * capacity, 420 + 14 * real_bytes
+        reals, fixed = 2 * capacity**2 + 5 * capacity, 420 + 14 * real_bytes
     total = real_bytes * reals + (12 + 3 * real_bytes) * gauges + fixed
     return -(-total // 8) * 8
 
