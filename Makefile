@@ -129,12 +129,16 @@ test-usage: host-build ## An outside project on the installed core, hosted and f
 	@$(CTEST) --label-regex '^usage$$'
 
 .PHONY: firmware
-firmware: $(VENV)/.requirements ## Images for Cortex-M4F, M7 and M33, in build/firmware/
+firmware: build/firmware/joint/elbow.hpp ## Images for Cortex-M4F, M7 and M33, in build/firmware/
 	$(HEADING) "firmware: images for Cortex-M"
 	@tools/ensure_debian.sh $(PYTHON) firmware
 	@$(WITH_VENV) cmake --log-level=WARNING -S firmware -B build/firmware -G Ninja \
 	    -DCMAKE_TOOLCHAIN_FILE="$(CURDIR)/firmware/toolchain.cmake" -DSTRAINWAVE_WERROR=ON >/dev/null
 	@$(WITH_VENV) cmake --build build/firmware --parallel $(JOBS)
+
+build/firmware/joint/elbow.hpp: firmware/joint.toml $(VENV)/.package
+	@mkdir -p $(@D)
+	@$(BIN)/strainwave export $< --out $(@D) >/dev/null
 
 .PHONY: firmware-test
 firmware-test: firmware ## The images in qemu: what they do and what an update costs

@@ -23,8 +23,8 @@ def _command(image: Path, argument: str) -> list[str]:
     ]
 
 
-def run(image: Path, argument: str = "", options: tuple[str, ...] = ()) -> str:
-    """Run an image; what it prints until it ends with exit code 0."""
+def run(image: Path, argument: str = "", options: tuple[str, ...] = (), exit_code: int = 0) -> str:
+    """Run an image; what it prints until it ends with the exit code that is expected."""
     try:
         done = subprocess.run(
             [*_command(image, argument), *options],
@@ -36,7 +36,7 @@ def run(image: Path, argument: str = "", options: tuple[str, ...] = ()) -> str:
         )
     except subprocess.TimeoutExpired as caught:
         raise ImageError(f"{image.name} did not end within {_longest_run_s} s") from caught
-    if done.returncode != 0:
+    if done.returncode != exit_code:
         raise ImageError(
             f"{image.name} ended with code {done.returncode}:\n{done.stdout}{done.stderr}"
         )

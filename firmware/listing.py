@@ -6,7 +6,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 
-def _tool(name: str, *arguments: str) -> str:
+def tool(name: str, *arguments: str) -> str:
+    """Run one of the compiler's tools; what it prints."""
     done = subprocess.run(
         [f"arm-none-eabi-{name}", *arguments], capture_output=True, text=True, check=True
     )
@@ -25,19 +26,19 @@ class Function:
 
 def symbols(image: Path) -> set[str]:
     """List the names of all symbols in an image."""
-    return {line.split()[-1] for line in _tool("nm", str(image)).splitlines()}
+    return {line.split()[-1] for line in tool("nm", str(image)).splitlines()}
 
 
 def functions(image: Path) -> dict[str, Function]:
     """Read all functions of an image, by name."""
     sizes = {}
-    for line in _tool("nm", "-S", str(image)).splitlines():
+    for line in tool("nm", "-S", str(image)).splitlines():
         parts = line.split()
         if len(parts) == 4 and parts[2] in "tTwW":
             sizes[parts[3]] = int(parts[1], 16)
     found: dict[str, Function] = {}
     current: Function | None = None
-    for line in _tool("objdump", "-d", "--no-show-raw-insn", str(image)).splitlines():
+    for line in tool("objdump", "-d", "--no-show-raw-insn", str(image)).splitlines():
         if heading := re.fullmatch(r"[0-9a-f]+ <(.+)>:", line):
             name = heading[1]
             current = found.setdefault(name, Function(name, sizes.get(name, 0)))

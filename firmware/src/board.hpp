@@ -42,3 +42,4 @@ inline constexpr std::uintptr_t cpacr = 0xE000ED88;
 
 /// Exit codes of an image, as the test sees them.
 inline constexpr int exit_unexpected_exception = 70;
+inline constexpr int exit_corrupt_joint = 71;

@@ -17,7 +17,7 @@ using Block = strainwave::LearnedBlock<float, joint::pairs>;
 enum class Found : std::uint8_t {
   restored,
   nothing,  ///< never saved: no fault
-  refused,  ///< damaged, or of another filter; the filter starts from nothing
+  refused,  ///< damaged, or of another filter; the filter starts from the joint file
 };
 
 extern Block block;

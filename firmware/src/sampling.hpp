@@ -19,16 +19,12 @@ struct Report {
   float load_Nm = 0.0F;          ///< the truth, which a product does not have
   float mean_square_Nm2 = 0.0F;  ///< of torque less load, smoothed over some 1000 samples
   strainwave::Status status = 0;
+  bool joint_intact = false;  ///< false: a fault, and the torque is 0
 };
 
-/// What the start found.
-struct Start {
-  bool joint_intact = false;  ///< false: nothing is sampled, and there is no torque
-  keeper::Found learned = keeper::Found::nothing;
-};
-
-/// Checks the joint's configuration in memory, sets the chain up and starts the interrupt.
-Start start();
+/// Checks the joint's constants in memory, sets the chain up and starts the interrupt; says what
+/// became of the coefficients kept.  With a spoilt joint the interrupt measures nothing.
+keeper::Found start();
 
 /// A consistent copy: taken again where the interrupt came in between.
 Report report();

@@ -24,7 +24,10 @@ def _firmware_tools(monkeypatch):
 
 
 def _results():
-    return json.loads((_root / "firmware/results.json").read_text())["subjects"]
+    from budgets import subjects  # noqa: PLC0415
+
+    recorded = json.loads((_root / "firmware/results.json").read_text())
+    return {subject: recorded[subject] for subject in subjects}
 
 
 def test_the_table_holds_the_results():
@@ -38,6 +41,19 @@ def test_the_table_holds_the_results():
         for name, figures in _results().items()
     }
     assert shown == measured
+
+
+def test_every_subject_is_on_record_with_its_figures():
+    names = (
+        "published_4",
+        "published_6",
+        "default_3_orders",
+        "default_3_orders_load_speed",
+        "chain_4_gauges",
+    )
+    results = _results()
+    assert tuple(results) == names
+    assert all(set(_columns) <= results[name].keys() for name in names)
 
 
 def test_the_default_filter_fits_a_kilobyte():

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file joint.hpp
-/// The joint of the images: four gauges, three orders, load and speed terms, misalignment.
+/// The joint whose cost is measured: four gauges, three orders, load and speed terms, misalignment.
 ///
-/// What `strainwave export` writes for a joint file takes this file's place: a constant `sensor`
-/// and its `checksum`.
+/// By hand, so that it has what the budget says and no more; the complete image's joint is
+/// exported.
 #pragma once
 
-#include "strainwave/config_checksum.hpp"
 #include "strainwave/torque_sensor.hpp"
 
 namespace joint {
@@ -87,8 +86,6 @@ constexpr SensorConfig made_up_sensor() {
 
 inline constexpr SensorConfig sensor = made_up_sensor();
 static_assert(check(sensor).ok(), "strainwave: the joint's configuration is wrong");
-/// Of the configuration as it was compiled; the start-up holds the memory against it.
-inline constexpr std::uint32_t checksum = strainwave::checksum_of(sensor);
 
 /// The misalignment's share of the torque measured, for the simulated gauges.
 constexpr float misalignment_Nm(strainwave::Phase motor) {
