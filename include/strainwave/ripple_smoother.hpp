@@ -102,7 +102,8 @@ inline RippleReading<Real> step_forward(const RippleFilterConfig<Real, MaxPairs>
                                         const RippleSample<Real>& sample,
                                         SmootherTrace<Real, MaxPairs>& trace) {
   RippleReading<Real> reading;
-  detail::RippleIntake<Real, MaxPairs> intake;
+  // All of it: a sample that is not taken in leaves regressors that are copied nevertheless.
+  detail::RippleIntake<Real, MaxPairs> intake{};
   detail::take_in(config, state, sample, intake, reading);
   trace = SmootherTrace<Real, MaxPairs>{};
   trace.ripple_Nm = reading.ripple_Nm;

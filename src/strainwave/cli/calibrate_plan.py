@@ -71,6 +71,11 @@ def calibrate_plan(
     check_output(out, endings=(".csv",))
     if printable is not None:
         check_output(printable, option="--printable", endings=(".html",))
+    if printable is not None and printable.exists():
+        raise InputError(
+            f"--printable {printable}: there is a file already; expected a new name, so choose "
+            "another one"
+        )
     if out.exists():
         raise InputError(
             f"--out {out}: there is a file already, and it may be a sheet somebody has filled in; "

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Final
 
 import cyclopts
 
@@ -11,6 +11,10 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from strainwave.certificate.building import Certificate
+
+
+#: Beyond this a certificate's own loads speak of another joint, or of another unit.
+LARGEST_LIKELY_ERROR_PERCENT: Final = 5.0
 
 
 def certify(
@@ -57,7 +61,7 @@ def certify(
     json : bool
         Print the certificate's values as JSON.
     """
-    from strainwave.cli.output import print_json, result_console
+    from strainwave.cli.output import print_json, progress_console, result_console
     from strainwave.errors import InputError
 
     if template is not None:
@@ -77,6 +81,8 @@ def certify(
     _check_outputs(out, pdf, [joint, session, loads, fluctuation])
     certificate = _certificate(joint, session, loads, loads_map, fluctuation, fluctuation_map)
     _write(certificate, out, pdf)
+    for warning in _warnings(certificate):
+        progress_console().print(f"strainwave: warning: {warning}", soft_wrap=True, markup=False)
     if json:
         print_json({**certificate.block, "certificate_sha256": certificate.sha256})
         return
@@ -89,12 +95,14 @@ def _write_template(template: Path, others: Sequence[Path | None]) -> None:
     from strainwave.atomic import write_atomically
     from strainwave.certificate.session import session_template
     from strainwave.errors import InputError
+    from strainwave.records.checks import check_output
 
     if any(other is not None for other in others):
         raise InputError(
             f"--template {template}: something else is asked for beside it; expected --template "
             "alone, so write the empty session file first"
         )
+    check_output(template, option="--template", endings=(".toml",))
     if template.exists():
         raise InputError(
             f"--template {template}: there is a file already; expected a new name, so choose "
@@ -175,6 +183,16 @@ def _write(certificate: Certificate, out: Path, pdf: Path | None) -> None:
         raise
 
 
+def _warnings(certificate: Certificate) -> Iterator[str]:
+    loads = certificate.block.get("loads", {})
+    error_percent = loads.get("largest_error_percent_of_rated_torque", 0.0)
+    if error_percent > LARGEST_LIKELY_ERROR_PERCENT:
+        yield (
+            f"the joint file's torque differs from the loads of --loads by up to {error_percent:.3g} "
+            "%FS: check --loads-map, its units, and whether these are this joint's loads"
+        )
+
+
 def _lines(certificate: Certificate, out: Path, pdf: Path | None) -> Iterator[str]:
     from strainwave.report.certificate import judged_text, number_text, wording
 
@@ -195,6 +213,9 @@ def _lines(certificate: Certificate, out: Path, pdf: Path | None) -> Iterator[st
             f"  {each['verdict']:<12} {each['label']}: {value}{unit}, limit "
             f"{number_text(each['limit'])}"
         )
+    if "loads" in block:
+        error = block["loads"]["largest_error_percent_of_rated_torque"]
+        yield f"  largest error of the readings in --loads: {number_text(error)} %FS"
     for each in block["checks"]:
         yield f"  {each['verdict']:<12} {each['what']}: {each['found']}"
     yield f"  joint file   {block['joint']['sha256']}"

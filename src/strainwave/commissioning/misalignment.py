@@ -49,6 +49,10 @@ PASSES_FOR_CHECK: Final = 3.0
 FIRST_PART: Final = 0.6
 
 
+#: Sine of half an angle below which a housing is not turned.
+_LEAST_TURNED: Final = 1e-3
+
+
 @dataclass(frozen=True)
 class FreeMotionTask:
     """What is to be commissioned, and what is known beforehand.
@@ -149,6 +153,11 @@ def _knowledge(task: FreeMotionTask) -> GravityKnowledge:
         raise InputError(
             "--turned-run: gravity is told as well; expected one of both, so leave out --axis, "
             "--gravity-torque and --payload-mass, or the runs with the housing turned"
+        )
+    if all(abs(math.sin(math.radians(degrees) / 2)) < _LEAST_TURNED for _, degrees in task.turned):
+        raise InputError(
+            "--turned-deg: every run has the housing where the first one has it; expected at least "
+            "one angle that is no multiple of 360 degrees (90 to 180 tell most), so correct it"
         )
     return "turned"
 

@@ -33,6 +33,9 @@ USUAL_REFERENCE_DEGC: Final = 20.0
 SMALL_RANGE_K: Final = 10.0
 #: Branches that differ by more than this share of the whole drift are worth a sentence.
 _HYSTERESIS_SHARE: Final = 0.05
+#: Beyond these a column of temperatures is more likely in another unit.
+COLDEST_LIKELY_DEGC: Final = -100.0
+HOTTEST_LIKELY_DEGC: Final = 150.0
 
 
 @dataclass(frozen=True)
@@ -256,13 +259,18 @@ def _warnings(
         if abs(off) > max(0.01, 2 * (section.consistency or 0.0)):
             says.append(
                 f"the gain here is {gain:.5g} Nm/V, {off:+.1%} off that of the joint file, which is "
-                "kept; check the loads and the wiring"
+                "kept; check the loads, the units of load and voltage, and the wiring"
             )
     low, high = fit.lowest_temperature_degC, fit.highest_temperature_degC
     if not low <= fit.reference_temperature_degC <= high:
         says.append(
             f"the reference temperature of {fit.reference_temperature_degC:g} degC lies outside of what "
-            f"was seen, {low:.4g} to {high:.4g} degC: give --reference-temperature, or readings there"
+            f"was seen, {low:.4g} to {high:.4g} degC: correct --reference-temperature (in degC), or take readings there"
+        )
+    if low < COLDEST_LIKELY_DEGC or high > HOTTEST_LIKELY_DEGC:
+        says.append(
+            f"the temperatures lie from {low:.4g} to {high:.4g} degC: check their unit, such as "
+            "temperature=COLUMN:K, and that the columns are not swapped"
         )
     return says
 

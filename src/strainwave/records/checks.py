@@ -53,6 +53,11 @@ def check_output(
         )
     if out.is_dir():
         raise InputError(f"{option} {out}: it is a folder; expected a file, so add a file name")
+    if out.suffix.lower() == ".html" and _is_certificate(out):
+        raise InputError(
+            f"{option} {out}: it is an issued certificate, which is never written over; expected a "
+            "name of its own, so choose another name"
+        )
     for path in inputs:
         if path is not None and os.path.realpath(out) == os.path.realpath(path):
             raise InputError(
@@ -71,6 +76,13 @@ def check_output(
             f"{option} {out}: it cannot be written ({reason}); expected an existing folder with "
             "permission to write, so choose another place"
         ) from error
+
+
+def _is_certificate(page: Path) -> bool:
+    try:
+        return page.is_file() and b'id="strainwave-certificate"' in page.read_bytes()
+    except OSError:
+        return False
 
 
 def check_method(name: str, known: Collection[str]) -> None:

@@ -21,6 +21,11 @@ JITTER: Final = 1.5
 """One row in a hundred comes later than so many median intervals."""
 
 
+_UNLOADED: Final = (
+    "was the joint without load? Otherwise check the gauges' unit, their order and the gain"
+)
+
+
 def warnings_of(layout: Layout, survey: Survey, rated_torque_Nm: float) -> tuple[str, ...]:
     """Put into sentences what is unusual, but no reason to stop.
 
@@ -129,7 +134,8 @@ def _torque(layout: Layout, survey: Survey, rated_torque_Nm: float) -> Iterator[
     elif 0.0 < largest_Nm < SMALLEST_SCALE * rated_torque_Nm:
         yield (
             f"the largest torque is {largest_Nm:.4g} Nm, {largest_Nm / rated_torque_Nm:.2g} of the "
-            f"rated torque of {rated_torque_Nm:g} Nm; is the column in volts?"
+            f"rated torque of {rated_torque_Nm:g} Nm; "
+            + ("is the column in volts?" if layout.chain is None else _UNLOADED)
         )
     elif largest_Nm > LARGEST_SCALE * rated_torque_Nm:
         yield (
