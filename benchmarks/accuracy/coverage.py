@@ -21,8 +21,6 @@ from benchmarks.accuracy.ripple import SCENARIOS
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-#: What twice a calibrated standard uncertainty covers, percent.
-CALIBRATED_PERCENT: Final = (93.0, 97.0)
 CANDIDATES: Final = ("noise as told", "expected innovation")
 
 
