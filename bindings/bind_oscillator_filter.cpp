@@ -131,9 +131,7 @@ class Filter {
           for (std::size_t i = 0; i < count; ++i) {
             states.data()[i] = static_cast<double>(now.states_Nm[i]);
             for (std::size_t j = 0; j < count; ++j) {
-              covariance[i * count + j] =
-                  static_cast<double>(now.covariance_Nm2[i >= j ? detail::packed_index(i, j)
-                                                                : detail::packed_index(j, i)]);
+              covariance[i * count + j] = static_cast<double>(now.covariance(i, j));
             }
           }
         },

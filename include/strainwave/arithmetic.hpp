@@ -127,18 +127,64 @@ template <class Real>
   }
 }
 
+/// Steps of the table of cosines and sines around the turn, as a power of two.
+inline constexpr std::uint32_t circle_bits = 7;
+
+/// Cosine and sine at every step around the turn.
+template <class Real>
+struct Circle {
+  CosSin<Real> at[1U << circle_bits] = {};
+
+  constexpr Circle() {
+    constexpr double step_rad = two_pi<double> / (1U << circle_bits);
+    constexpr std::uint32_t quarter = 1U << (circle_bits - 2U);
+    for (std::uint32_t i = 0; i < 4U * quarter; ++i) {
+      const std::uint32_t quarters = (i + quarter / 2U) / quarter;
+      const auto rest = static_cast<std::int32_t>(i - quarters * quarter);
+      const auto exact = turn_by_quarters(cos_sin_reduced(rest * step_rad), quarters);
+      at[i] = {static_cast<Real>(exact.cosine), static_cast<Real>(exact.sine)};
+    }
+  }
+};
+
+template <class Real>
+inline constexpr Circle<Real> circle = {};
+
+/// A pair turned on by at most half a step of the table.  The first term left out is below a
+/// quarter of a unit in the last place of Real.
+template <class Real>
+[[nodiscard]] constexpr CosSin<Real> turned_within_step(const CosSin<Real>& from, Real angle_rad) {
+  const Real square = angle_rad * angle_rad;
+  Real cosine_less_1 = -Real(0.5);
+  Real sine_tail = Real(-1) / Real(6);
+  if constexpr (!std::is_same_v<Real, float>) {
+    sine_tail += square * (Real(1) / Real(120) - square * (Real(1) / Real(5040)));
+    cosine_less_1 += square * (Real(1) / Real(24) - square * (Real(1) / Real(720)));
+  }
+  cosine_less_1 *= square;
+  const Real sine = angle_rad + angle_rad * square * sine_tail;
+  return {from.cosine + (from.cosine * cosine_less_1 - from.sine * sine),
+          from.sine + (from.sine * cosine_less_1 + from.cosine * sine)};
+}
+
 }  // namespace detail
 
-/// Cosine and sine of a fraction of a turn in units of 2^-32 turn.  The reduction is exact, so the
-/// result is as good after a year of running as in the first turn.
-template <class Real>
-[[nodiscard]] constexpr CosSin<Real> cos_sin_of_fraction(std::uint32_t fraction) {
-  constexpr std::uint32_t eighth = 1U << 29U;
-  const std::uint32_t quarters = (fraction + eighth) >> 30U;
-  const auto remainder = static_cast<std::int32_t>(fraction - (quarters << 30U));
-  constexpr Real radians_per_unit = two_pi<Real> / Real(4294967296.0);
-  return detail::turn_by_quarters(
-      detail::cos_sin_reduced(static_cast<Real>(remainder) * radians_per_unit), quarters);
+/// Cosine and sine of a fraction of a turn, the whole range of an unsigned number being one turn.
+/// The reduction is exact, so the result is as good after a year of running as in the first turn.
+/// No branch: every angle takes as long as any other.
+template <class Real, class Fraction>
+[[nodiscard]] constexpr CosSin<Real> cos_sin_of_fraction(Fraction fraction) {
+  static_assert(std::is_unsigned_v<Fraction> && sizeof(Fraction) >= 4);
+  constexpr auto bits = std::numeric_limits<Fraction>::digits;
+  constexpr auto rest_bits = bits - detail::circle_bits;
+  constexpr Fraction half_step = Fraction{1} << (rest_bits - 1U);
+  const Fraction step = static_cast<Fraction>(fraction + half_step) >> rest_bits;
+  // What is left of the nearest step: the low bits with the sign of the highest of them.
+  const auto rest = static_cast<std::make_signed_t<Fraction>>(fraction << detail::circle_bits);
+  constexpr Real radians_per_unit = two_pi<Real> / (Real(1U << (detail::circle_bits + 2U)) *
+                                                    static_cast<Real>(Fraction{1} << (bits - 2)));
+  return detail::turned_within_step(detail::circle<Real>.at[step],
+                                    static_cast<Real>(rest) * radians_per_unit);
 }
 
 /// The largest angle cos_sin_of_radians() takes, rad; beyond it the reduction would lose digits.

@@ -53,44 +53,40 @@ template <class Real>
 
 namespace detail {
 
-/// Most samples without an update that count; more would only repeat what the limit says.
+template <class Real>
+inline constexpr Real largest_rotation_turns = Real(largest_rotation_rad) / two_pi<Real>;
+
+/// Most samples at once whose process noise counts; more would only repeat what the limit says.
 inline constexpr std::uint32_t most_samples_without_update = 1U << 20U;
 /// Most missing samples whose rotation is carried on at the last speed.
 inline constexpr std::uint32_t most_carried_samples = 64;
 
+[[nodiscard]] constexpr std::uint32_t at_most(std::uint32_t limit, std::uint32_t value) {
+  return value < limit ? value : limit;
+}
+
 /// Adds samples to a counter that ends at most_samples_without_update.
 constexpr void count_up_to(std::uint32_t& counter, std::uint32_t samples) {
-  const std::uint32_t room = most_samples_without_update - counter;
-  counter += samples < room ? samples : room;
+  counter += at_most(most_samples_without_update - counter, samples);
 }
 
 /// The output row at the present angle.  An order that is twice another one costs no cosine.
 template <class Real, std::size_t MaxOrders>
 constexpr void output_now(const OscillatorFilterConfig<Real, MaxOrders>& config,
                           const OscillatorFilterState<Real, MaxOrders>& state, Phase now,
-                          CosSin<Real>* output) {
+                          Real* output) {
   for (std::size_t a = 0; a < active_orders(config); ++a) {
+    CosSin<Real> wave = {};
     if (const std::size_t b = half_of(config, a); b < a) {
-      output[a] = doubled(output[b]);
+      wave = doubled(CosSin<Real>{output[2 * b], output[2 * b + 1]});
     } else if (config.rotation_source == RotationSource::angle) {
-      output[a] = cos_sin_of_fraction<Real>(order_fraction(now, config.orders[a]));
+      wave = cos_sin_of_fraction<Real>(order_fraction(now, config.orders[a]));
     } else {
-      output[a] = turned(state.output[a], cos_sin_of_radians(to_real<Real>(config.orders[a]) *
-                                                             state.pending_rotation_rad));
+      wave = cos_sin_of_fraction<Real>(state.angle[a]);
     }
+    output[2 * a] = wave.cosine;
+    output[2 * a + 1] = wave.sine;
   }
-}
-
-/// The output row from here on, and no rotation since it.
-template <class Real, std::size_t MaxOrders>
-constexpr void take_output(const OscillatorFilterConfig<Real, MaxOrders>& config,
-                           OscillatorFilterState<Real, MaxOrders>& state,
-                           const CosSin<Real>* output) {
-  for (std::size_t a = 0; a < active_orders(config); ++a) {
-    state.output[a].cosine = output[a].cosine;
-    state.output[a].sine = output[a].sine;
-  }
-  state.pending_rotation_rad = Real(0);
 }
 
 /// Time over which the speed is smoothed before it is compared with minimum_speed_rad_s, s.
@@ -99,6 +95,10 @@ inline constexpr float speed_smoothing_s = 0.05F;
 template <class Real, std::size_t MaxOrders>
 constexpr void smooth_speed(const OscillatorFilterConfig<Real, MaxOrders>& config,
                             OscillatorFilterState<Real, MaxOrders>& state, Real speed_rad_s) {
+  if (config.minimum_speed_rad_s == Real(0)) {  // nobody waits for it to be still
+    state.smoothed_speed_rad_s = speed_rad_s;
+    return;
+  }
   const Real share =
       config.sample_period_s / (config.sample_period_s + static_cast<Real>(speed_smoothing_s));
   state.smoothed_speed_rad_s += share * (speed_rad_s - state.smoothed_speed_rad_s);
@@ -141,42 +141,41 @@ constexpr Status take_phase(const OscillatorFilterConfig<Real, MaxOrders>& confi
   return nyquist_status(config, rotation_rad);
 }
 
-/// Takes in the rotation from this sample to the next, eq. (10) with speed[k] T_s.
+/// Rotation of the motor from a sample to the next, turns.
 template <class Real, std::size_t MaxOrders>
-constexpr Status take_rotation(const OscillatorFilterConfig<Real, MaxOrders>& config,
-                               OscillatorFilterState<Real, MaxOrders>& state, Real speed_rad_s) {
-  const Real turned_rad = highest_order(config) * (speed_rad_s * config.sample_period_s);
-  const bool usable = absolute(turned_rad) <= Real(largest_rotation_rad);  // and not NaN
-  if (usable) {
-    state.last_speed_rad_s = speed_rad_s;
+[[nodiscard]] constexpr Real turns_of(const OscillatorFilterConfig<Real, MaxOrders>& config,
+                                      Real speed_rad_s) {
+  return speed_rad_s * (config.sample_period_s / two_pi<Real>);
+}
+
+/// Turns every order's angle on by a rotation of the motor; `short_of_a_cycle` where no order turns
+/// a whole cycle.
+template <class Real, std::size_t MaxOrders>
+constexpr void turn_on(const OscillatorFilterConfig<Real, MaxOrders>& config,
+                       OscillatorFilterState<Real, MaxOrders>& state, Real motor_turns,
+                       bool short_of_a_cycle) {
+  using Fraction = typename OscillatorFilterState<Real, MaxOrders>::Fraction;
+  using Signed = std::make_signed_t<Fraction>;
+  constexpr Real half_range = Real(2) * static_cast<Real>(Fraction{1} << (sizeof(Real) * 8 - 2));
+  for (std::size_t a = 0; a < active_orders(config); ++a) {
+    if (half_of(config, a) < a) {
+      continue;
+    }
+    Real cycles = to_real<Real>(config.orders[a]) * motor_turns;
+    if (!short_of_a_cycle) {
+      cycles -= static_cast<Real>(static_cast<std::int32_t>(cycles));
+    }
+    state.angle[a] += 2U * static_cast<Fraction>(static_cast<Signed>(cycles * half_range));
   }
-  // A motor does not stop within a sample: the last known speed is the better guess.
-  const Real rotation_rad = state.last_speed_rad_s * config.sample_period_s;
-  state.pending_rotation_rad += rotation_rad;
-  smooth_speed(config, state, state.last_speed_rad_s);
-  return usable ? nyquist_status(config, rotation_rad) : mask(StatusFlag::rotation_invalid);
+  if (config.minimum_travel_rad > Real(0)) {
+    state.travel_rad += motor_turns * two_pi<Real>;
+  }
 }
 
 /// Whether a magnitude reaches a limit; 0 is no limit.
 template <class Real>
 [[nodiscard]] constexpr bool is_at_least(Real limit, Real value) {
   return limit == Real(0) || absolute(value) >= limit;
-}
-
-/// Longest rotation that waits for an update, rad.  A longer sum would lose the digits of a crawl's
-/// steps in float.
-inline constexpr float longest_pending_rotation_rad = 0.1F;
-
-/// Takes a long pending rotation into the output row without an update, so that it stays small
-/// however long samples are rejected or the motor crawls.
-template <class Real, std::size_t MaxOrders>
-constexpr void take_long_rotation(const OscillatorFilterConfig<Real, MaxOrders>& config,
-                                  OscillatorFilterState<Real, MaxOrders>& state,
-                                  const CosSin<Real>* output) {
-  if (absolute(state.pending_rotation_rad) > static_cast<Real>(longest_pending_rotation_rad)) {
-    take_output(config, state, output);
-    state.rotated_without_update = true;
-  }
 }
 
 /// Carries the rotation on at the last speed over samples that never arrived, all at once, so that
@@ -186,18 +185,78 @@ constexpr void carry_rotation(const OscillatorFilterConfig<Real, MaxOrders>& con
                               OscillatorFilterState<Real, MaxOrders>& state,
                               std::uint32_t samples) {
   // Past the first few the phase is a guess.
-  const auto carried =
-      static_cast<Real>(samples < most_carried_samples ? samples : most_carried_samples);
-  const Real rotation_rad = carried * (state.last_speed_rad_s * config.sample_period_s);
-  if (absolute(highest_order(config) * rotation_rad) <= Real(largest_rotation_rad)) {
-    state.pending_rotation_rad += rotation_rad;
+  const auto carried = static_cast<Real>(at_most(most_carried_samples, samples));
+  const Real motor_turns = carried * turns_of(config, state.last_speed_rad_s);
+  if (absolute(highest_order(config) * motor_turns) <= largest_rotation_turns<Real>) {
+    turn_on(config, state, motor_turns, false);
   }
   const Real gap_s = carried * config.sample_period_s;
   state.smoothed_speed_rad_s += gap_s / (gap_s + static_cast<Real>(speed_smoothing_s)) *
                                 (state.last_speed_rad_s - state.smoothed_speed_rad_s);
-  CosSin<Real> output[MaxOrders] = {};
-  output_now(config, state, Phase{}, output);
-  take_long_rotation(config, state, output);
+}
+
+/// Takes in the rotation from this sample to the next, eq. (10) with speed[k] T_s.
+template <class Real, std::size_t MaxOrders>
+constexpr Status take_rotation(const OscillatorFilterConfig<Real, MaxOrders>& config,
+                               OscillatorFilterState<Real, MaxOrders>& state, Real speed_rad_s) {
+  const Real motor_turns = turns_of(config, speed_rad_s);
+  const Real highest_turns = absolute(highest_order(config) * motor_turns);
+  if (highest_turns <= Real(0.5)) [[likely]] {
+    state.last_speed_rad_s = speed_rad_s;
+    turn_on(config, state, motor_turns, true);
+    return 0;
+  }
+  if (highest_turns <= largest_rotation_turns<Real>) {
+    state.last_speed_rad_s = speed_rad_s;
+    turn_on(config, state, motor_turns, false);
+    return mask(StatusFlag::order_above_nyquist);
+  }
+  // Or not a number.  A motor does not stop within a sample: the last known speed is the better
+  // guess.
+  turn_on(config, state, turns_of(config, state.last_speed_rad_s), false);
+  return mask(StatusFlag::rotation_invalid);
+}
+
+/// Whether both torques are usable, in one comparison; false says nothing yet.
+template <class Real>
+[[nodiscard]] constexpr bool are_sound(Real measured_torque_Nm, Real expected_torque_Nm) {
+  return is_usable_torque(absolute(measured_torque_Nm) + absolute(expected_torque_Nm));
+}
+
+/// What is wrong with a sample's torques.
+template <class Real>
+[[nodiscard]] constexpr Status torque_status(const OscillatorSample<Real>& sample) {
+  Status status = 0;
+  if (sample.torque_valid && !is_usable_torque(sample.measured_torque_Nm)) {
+    status |= mask(StatusFlag::torque_not_finite);
+  }
+  if (!is_usable_torque(sample.expected_torque_Nm)) {
+    status |= mask(StatusFlag::expected_torque_not_finite);
+  }
+  return status;
+}
+
+/// Whether the motor has moved since the last update, and still does.
+template <class Real, std::size_t MaxOrders>
+[[nodiscard]] constexpr bool is_moving(const OscillatorFilterConfig<Real, MaxOrders>& config,
+                                       const OscillatorFilterState<Real, MaxOrders>& state,
+                                       Phase now) {
+  const Real travel_rad = config.rotation_source == RotationSource::angle
+                              ? to_radians<Real>(now - state.frame)
+                              : state.travel_rad;
+  return is_at_least(config.minimum_travel_rad, travel_rad) &&
+         is_at_least(config.minimum_speed_rad_s, state.smoothed_speed_rad_s);
+}
+
+/// Travel is measured from here on.
+template <class Real, std::size_t MaxOrders>
+constexpr void begin_travel(const OscillatorFilterConfig<Real, MaxOrders>& config,
+                            OscillatorFilterState<Real, MaxOrders>& state, Phase now) {
+  if (config.rotation_source == RotationSource::angle) {
+    state.frame = now;
+  } else if (config.minimum_travel_rad > Real(0)) {
+    state.travel_rad = Real(0);
+  }
 }
 
 }  // namespace detail
@@ -208,9 +267,6 @@ template <class Real, std::size_t MaxOrders>
     const OscillatorFilterConfig<Real, MaxOrders>& config) {
   OscillatorFilterState<Real, MaxOrders> state;
   detail::reset_covariance(config, state);
-  for (CosSin<Real>& each : state.output) {
-    each = {Real(1), Real(0)};
-  }
   return state;
 }
 
@@ -218,7 +274,9 @@ template <class Real, std::size_t MaxOrders>
 template <class Real, std::size_t MaxOrders>
 constexpr void skip(const OscillatorFilterConfig<Real, MaxOrders>& config,
                     OscillatorFilterState<Real, MaxOrders>& state, std::uint32_t samples) {
-  detail::count_up_to(state.samples_without_update, samples);
+  detail::add_process_noise(
+      config, state,
+      static_cast<Real>(detail::at_most(detail::most_samples_without_update, samples)));
   detail::count_up_to(state.samples_since_phase, samples);
   if (config.rotation_source == RotationSource::speed) {
     detail::carry_rotation(config, state, samples);
@@ -240,67 +298,56 @@ inline OscillatorReading<Real> step(const OscillatorFilterConfig<Real, MaxOrders
   } else if (by_angle) {
     reading.status |= detail::take_phase(config, state, sample.motor_phase);
   }
-  CosSin<Real> output[MaxOrders] = {};
+  Real output[2 * MaxOrders] = {};
   detail::output_now(config, state, now, output);
-  for (std::size_t a = 0; a < active_orders(config); ++a) {
-    reading.ripple_Nm +=
-        output[a].cosine * state.states_Nm[2 * a] + output[a].sine * state.states_Nm[2 * a + 1];
+  Real states_Nm[2 * MaxOrders] = {};
+  for (std::size_t i = 0; i < 2 * active_orders(config); ++i) {
+    states_Nm[i] = detail::passing(state.states_Nm[i]);
   }
-
-  const bool torque_usable = sample.torque_valid && is_usable_torque(sample.measured_torque_Nm);
-  if (torque_usable) {
-    state.last_torque_Nm = sample.measured_torque_Nm - reading.ripple_Nm;
-  } else if (sample.torque_valid) {
-    reading.status |= mask(StatusFlag::torque_not_finite);
-  }
-  reading.torque_Nm = state.last_torque_Nm;
-  const bool expected_usable = is_usable_torque(sample.expected_torque_Nm);
-  if (!expected_usable) {
-    reading.status |= mask(StatusFlag::expected_torque_not_finite);
-  }
-
-  const Real travel_rad =
-      by_angle ? to_radians<Real>(now - state.frame) : state.pending_rotation_rad;
-  const bool moving = (state.rotated_without_update ||
-                       detail::is_at_least(config.minimum_travel_rad, travel_rad)) &&
-                      detail::is_at_least(config.minimum_speed_rad_s, state.smoothed_speed_rad_s);
-  if (!torque_usable || !expected_usable || !angle_known) {
-    detail::count_up_to(state.samples_without_update, 1);
-    detail::take_long_rotation(config, state, output);
-  } else if (!moving) {
-    reading.status |= mask(StatusFlag::at_rest);
-    detail::take_long_rotation(config, state, output);
-  } else {
-    detail::take_output(config, state, output);
-    if (by_angle) {
-      state.frame = now;
-    }
-    reading.status |=
-        detail::update(config, state, output,
-                       sample.measured_torque_Nm - sample.expected_torque_Nm - reading.ripple_Nm);
-    state.samples_without_update = 0;
-    state.rotated_without_update = false;
-  }
+  reading.ripple_Nm =
+      detail::sum_of_products(2 * active_orders(config), states_Nm, output, Real(0));
+  const bool moving = detail::is_moving(config, state, now);
   if (!by_angle) {
     reading.status |= detail::take_rotation(config, state, sample.motor_speed_rad_s);
+    detail::smooth_speed(config, state, state.last_speed_rad_s);
   }
+  bool learns = sample.torque_valid && (reading.status & fault_mask) == 0U;
+  if (!detail::are_sound(sample.measured_torque_Nm, sample.expected_torque_Nm)) [[unlikely]] {
+    reading.status |= detail::torque_status(sample);
+    learns = learns && (reading.status & fault_mask) == 0U;
+  }
+  if (learns) [[likely]] {
+    state.last_torque_Nm = sample.measured_torque_Nm - reading.ripple_Nm;
+    if (moving) {
+      detail::begin_travel(config, state, now);
+      reading.status |=
+          detail::update(config, state, output, state.last_torque_Nm - sample.expected_torque_Nm);
+    } else {
+      reading.status |= mask(StatusFlag::at_rest);
+    }
+  } else {
+    if (sample.torque_valid && !has(reading.status, StatusFlag::torque_not_finite)) {
+      state.last_torque_Nm = sample.measured_torque_Nm - reading.ripple_Nm;
+    }
+    detail::add_process_noise(config, state, Real(1));
+  }
+  reading.torque_Nm = state.last_torque_Nm;
   record(state.counters, reading.status);
   return reading;
 }
 
-/// The state in the paper's frame, its pending rotation applied: x(k+1) and P(k+1) of eq. (12) and
-/// (14) after step k with RotationSource::speed.
+/// The state in the paper's frame: x(k+1) and P(k+1) of eq. (12) and (14) after step k with
+/// RotationSource::speed.
 template <class Real, std::size_t MaxOrders>
 [[nodiscard]] constexpr OscillatorFilterState<Real, MaxOrders> predicted(
     const OscillatorFilterConfig<Real, MaxOrders>& config,
     OscillatorFilterState<Real, MaxOrders> state) {
-  CosSin<Real> output[MaxOrders] = {};
+  Real output[2 * MaxOrders] = {};
   detail::output_now(config, state, state.frame, output);
   detail::rotate(active_orders(config), state, output);
-  for (CosSin<Real>& each : output) {
-    each = {Real(1), Real(0)};
+  for (auto& each : state.angle) {
+    each = 0;
   }
-  detail::take_output(config, state, output);
   return state;
 }
 

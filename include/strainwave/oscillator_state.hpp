@@ -9,10 +9,14 @@
 /// stored.
 #pragma once
 
+#include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
+#include <type_traits>
 
 #include "strainwave/oscillator_config.hpp"
+#include "strainwave/oscillator_covariance.hpp"
 #include "strainwave/status.hpp"
 #include "strainwave/units.hpp"
 
@@ -23,31 +27,35 @@ namespace strainwave {
 template <class Real, std::size_t MaxOrders>
 struct OscillatorFilterState {
   static constexpr std::size_t max_states = 2 * MaxOrders;
+  static constexpr std::size_t column_length = detail::column_length(max_states);
+  /// An angle as a fraction of a turn, the whole range of the number being one turn: finer than
+  /// the last place of a sample's rotation.
+  using Fraction = std::conditional_t<std::is_same_v<Real, float>, std::uint32_t, std::uint64_t>;
 
-  Real states_Nm[max_states] = {};
-  /// Lower triangle of P by rows: element (i, j), j <= i, at i (i + 1) / 2 + j.
-  Real covariance_Nm2[max_states * (max_states + 1) / 2] = {};
-  /// Output row C of eq. (9) in the turning frame: cosine and sine of each order's angle.
-  CosSin<Real> output[MaxOrders] = {};
-  /// Rotation of the motor since `output`, used with RotationSource::speed.
-  Real pending_rotation_rad = Real(0);
-  bool rotated_without_update = false;  ///< part of the rotation was applied since the last update
-  Phase frame = {};  ///< motor phase of `output`, used with RotationSource::angle
+  /// P by columns: element (i, j), j <= i, at [j][i].  See covariance().
+  Real covariance_Nm2[max_states][column_length] = {};
+  Real states_Nm[column_length] = {};
+  /// Each order's angle, of which the output row C of eq. (9) has cosine and sine; used with
+  /// RotationSource::speed, and not for an order that is twice another one.
+  Fraction angle[MaxOrders] = {};
+  /// Of the motor since the last update, used with RotationSource::speed and minimum_travel_rad.
+  Real travel_rad = Real(0);
+  Phase frame = {};  ///< motor phase at the last update, used with RotationSource::angle
   bool frame_known = false;
-  std::uint32_t samples_without_update = 0;  ///< rejected or missing since the last update
   Real last_speed_rad_s = Real(0);
   Real smoothed_speed_rad_s = Real(0);
   Phase last_phase = {};                  ///< of the last sample with a phase
   std::uint32_t samples_since_phase = 0;  ///< missing or without a phase since then
   Real last_torque_Nm = Real(0);
   EventCounters counters = {};
+
+  /// Element (i, j) of P.
+  [[nodiscard]] constexpr Real covariance(std::size_t i, std::size_t j) const {
+    return i < j ? covariance_Nm2[i][j] : covariance_Nm2[j][i];
+  }
 };
 
 namespace detail {
-
-[[nodiscard]] constexpr std::size_t packed_index(std::size_t row, std::size_t column) {
-  return row * (row + 1) / 2 + column;
-}
 
 /// Phi_i of eq. (10) applied to one order's pair of states.
 template <class Real>
@@ -55,16 +63,6 @@ constexpr void rotate_pair(Real& first, Real& second, const CosSin<Real>& turn) 
   const Real rotated = turn.cosine * first + turn.sine * second;
   second = turn.cosine * second - turn.sine * first;
   first = rotated;
-}
-
-/// An output row turned on.  Its length is put back to 1 to first order: rounding would let it
-/// drift.
-template <class Real>
-[[nodiscard]] constexpr CosSin<Real> turned(const CosSin<Real>& output, const CosSin<Real>& turn) {
-  const Real cosine = output.cosine * turn.cosine - output.sine * turn.sine;
-  const Real sine = output.sine * turn.cosine + output.cosine * turn.sine;
-  const Real scale = Real(1.5) - Real(0.5) * (cosine * cosine + sine * sine);
-  return {scale * cosine, scale * sine};
 }
 
 /// Cosine and sine of the double angle.
@@ -84,31 +82,28 @@ template <class Real, std::size_t MaxOrders>
   return b;
 }
 
-/// x <- Phi x and P <- Phi P Phi', block by block.
+/// x <- Phi x and P <- Phi P Phi', an order's rows and columns at a time.
 template <class Real, std::size_t MaxOrders>
 constexpr void rotate(std::size_t order_count, OscillatorFilterState<Real, MaxOrders>& state,
-                      const CosSin<Real>* turns) {
-  Real* const p = state.covariance_Nm2;
+                      const Real* output) {
+  auto& p = state.covariance_Nm2;
+  const std::size_t count = 2 * order_count;
   for (std::size_t a = 0; a < order_count; ++a) {
-    const CosSin<Real> turn = turns[a];
-    rotate_pair(state.states_Nm[2 * a], state.states_Nm[2 * a + 1], turn);
-    Real* const upper = p + packed_index(2 * a, 0);
-    Real* const lower = p + packed_index(2 * a + 1, 0);
-    for (std::size_t b = 0; b < a; ++b) {
-      rotate_pair(upper[2 * b], lower[2 * b], turn);
-      rotate_pair(upper[2 * b + 1], lower[2 * b + 1], turn);
-      rotate_pair(upper[2 * b], upper[2 * b + 1], turns[b]);
-      rotate_pair(lower[2 * b], lower[2 * b + 1], turns[b]);
+    const std::size_t i = 2 * a;
+    const CosSin<Real> turn = {output[i], output[i + 1]};
+    rotate_pair(state.states_Nm[i], state.states_Nm[i + 1], turn);
+    for (std::size_t j = 0; j < i; ++j) {
+      rotate_pair(p[j][i], p[j][i + 1], turn);
     }
-    const Real p00 = upper[2 * a];
-    const Real p10 = lower[2 * a];
-    const Real p11 = lower[2 * a + 1];
-    const Real cc = turn.cosine * turn.cosine;
-    const Real cs = turn.cosine * turn.sine;
-    const Real ss = turn.sine * turn.sine;
-    upper[2 * a] = cc * p00 + Real(2) * cs * p10 + ss * p11;
-    lower[2 * a] = (cc - ss) * p10 + cs * (p11 - p00);
-    lower[2 * a + 1] = ss * p00 - Real(2) * cs * p10 + cc * p11;
+    for (std::size_t j = i + 2; j < count; ++j) {
+      rotate_pair(p[i][j], p[i + 1][j], turn);
+    }
+    const CosSin<Real> twice = doubled(turn);
+    const Real mean = Real(0.5) * (p[i][i] + p[i + 1][i + 1]);
+    Real difference = Real(0.5) * (p[i][i] - p[i + 1][i + 1]);
+    rotate_pair(difference, p[i][i + 1], twice);
+    p[i][i] = mean + difference;
+    p[i + 1][i + 1] = mean - difference;
   }
 }
 
@@ -118,13 +113,13 @@ template <class Real, std::size_t MaxOrders>
 inline bool limit_variance(const OscillatorFilterConfig<Real, MaxOrders>& config,
                            OscillatorFilterState<Real, MaxOrders>& state) {
   bool limited = false;
-  Real* const p = state.covariance_Nm2;
+  auto& p = state.covariance_Nm2;
   const std::size_t state_count = 2 * active_orders(config);
   for (std::size_t a = 0; a < active_orders(config); ++a) {
     const Real limit = config.initial_variance_Nm2 +
                        config.variance_limit_ratio * config.process_noise_variance_Nm2[a];
-    const Real first = p[packed_index(2 * a, 2 * a)];
-    const Real second = p[packed_index(2 * a + 1, 2 * a + 1)];
+    const Real first = p[2 * a][2 * a];
+    const Real second = p[2 * a + 1][2 * a + 1];
     const Real larger = first > second ? first : second;
     if (!(larger > limit)) {
       continue;
@@ -133,9 +128,9 @@ inline bool limit_variance(const OscillatorFilterConfig<Real, MaxOrders>& config
     const Real scale = square_root(limit / larger);
     for (std::size_t i = 2 * a; i < 2 * a + 2; ++i) {
       for (std::size_t j = 0; j < state_count; ++j) {
-        p[i >= j ? packed_index(i, j) : packed_index(j, i)] *= scale;
+        (i < j ? p[i][j] : p[j][i]) *= scale;
       }
-      p[packed_index(i, i)] *= scale;
+      p[i][i] *= scale;
     }
     // The element shared by both rows was scaled with each of them, as it has to be.
   }
@@ -146,66 +141,50 @@ template <class Real, std::size_t MaxOrders>
 constexpr void reset_covariance(const OscillatorFilterConfig<Real, MaxOrders>& config,
                                 OscillatorFilterState<Real, MaxOrders>& state) {
   const std::size_t state_count = 2 * active_orders(config);
-  for (std::size_t i = 0; i < state_count; ++i) {
-    for (std::size_t j = 0; j <= i; ++j) {
-      state.covariance_Nm2[packed_index(i, j)] = i == j ? config.initial_variance_Nm2 : Real(0);
+  for (std::size_t j = 0; j < state_count; ++j) {
+    for (std::size_t i = j; i < state_count; ++i) {
+      state.covariance_Nm2[j][i] = i == j ? config.initial_variance_Nm2 : Real(0);
     }
   }
 }
 
-/// P C', and C P C' + R, which is returned.
+/// The process noise of samples that pass without an update.
 template <class Real, std::size_t MaxOrders>
-[[nodiscard]] constexpr Real project(const OscillatorFilterConfig<Real, MaxOrders>& config,
-                                     const OscillatorFilterState<Real, MaxOrders>& state,
-                                     const CosSin<Real>* output, Real* covariance_with_output) {
-  const std::size_t state_count = 2 * active_orders(config);
-  const Real* const p = state.covariance_Nm2;
-  Real c[2 * MaxOrders] = {};
-  for (std::size_t a = 0; a < active_orders(config); ++a) {
-    c[2 * a] = output[a].cosine;
-    c[2 * a + 1] = output[a].sine;
+constexpr void add_process_noise(const OscillatorFilterConfig<Real, MaxOrders>& config,
+                                 OscillatorFilterState<Real, MaxOrders>& state, Real samples) {
+  for (std::size_t i = 0; i < 2 * active_orders(config); ++i) {
+    state.covariance_Nm2[i][i] += samples * config.process_noise_variance_Nm2[i / 2];
   }
-  for (std::size_t i = 0; i < state_count; ++i) {
-    covariance_with_output[i] = p[packed_index(i, i)] * c[i];
-    for (std::size_t j = 0; j < i; ++j) {
-      const Real element = p[packed_index(i, j)];
-      covariance_with_output[i] += element * c[j];
-      covariance_with_output[j] += element * c[i];
-    }
-  }
-  Real variance = config.measurement_noise_variance_Nm2;
-  for (std::size_t i = 0; i < state_count; ++i) {
-    variance += covariance_with_output[i] * c[i];
-  }
-  return variance;
+}
+
+/// Whether a number is between two positive ones, whatever it is.  The bits of positive numbers are
+/// in their order, and one comparison of whole numbers does for both limits and NaN.
+template <class Real>
+[[nodiscard]] constexpr bool is_between(Real least, Real value, Real most) {
+  using Bits = std::conditional_t<sizeof(Real) == 4, std::uint32_t, std::uint64_t>;
+  const Bits from = std::bit_cast<Bits>(least);
+  return std::bit_cast<Bits>(value) - from <= std::bit_cast<Bits>(most) - from;
 }
 
 /// Eq. (12) to (14): gain, states and covariance after the measurement, plus the process noise; the
 /// rotation is in the output row.  Returns limits that acted.
 template <class Real, std::size_t MaxOrders>
 inline Status update(const OscillatorFilterConfig<Real, MaxOrders>& config,
-                     OscillatorFilterState<Real, MaxOrders>& state, const CosSin<Real>* output,
+                     OscillatorFilterState<Real, MaxOrders>& state, const Real* output,
                      Real innovation_Nm) {
   const std::size_t state_count = 2 * active_orders(config);
-  Real* const p = state.covariance_Nm2;
   Real covariance_with_output[2 * MaxOrders];  // NOLINT(*-member-init): project() fills it
-  const Real innovation_variance = project(config, state, output, covariance_with_output);
-  if (!(innovation_variance >= config.measurement_noise_variance_Nm2) ||
-      !is_finite(innovation_variance)) {
+  const Real innovation_variance =
+      project(state_count, state.covariance_Nm2, output, config.measurement_noise_variance_Nm2,
+              covariance_with_output);
+  if (!is_between(config.measurement_noise_variance_Nm2, innovation_variance,
+                  std::numeric_limits<Real>::max())) {
     // C P C' < 0: rounding has cost P its sign.  The states are kept.
     reset_covariance(config, state);
     return mask(StatusFlag::covariance_reset);
   }
-  const Real per_variance = Real(1) / innovation_variance;
-  const Real samples = static_cast<Real>(state.samples_without_update) + Real(1);
-  for (std::size_t i = 0; i < state_count; ++i) {
-    const Real gain = covariance_with_output[i] * per_variance;
-    state.states_Nm[i] += gain * innovation_Nm;
-    p[packed_index(i, i)] += samples * config.process_noise_variance_Nm2[i / 2];
-    for (std::size_t j = 0; j <= i; ++j) {
-      p[packed_index(i, j)] -= gain * covariance_with_output[j];
-    }
-  }
+  learn(state_count, state.covariance_Nm2, state.states_Nm, config.process_noise_variance_Nm2,
+        covariance_with_output, Real(1) / innovation_variance, innovation_Nm);
   if (config.variance_limit_ratio > Real(0) && limit_variance(config, state)) {
     return mask(StatusFlag::variance_limited);
   }

@@ -54,8 +54,9 @@ struct EventCounters {
 };
 
 constexpr void count_up(std::uint32_t& counter) {
-  if (counter != 0xFFFFFFFFU) {
-    ++counter;
+  const std::uint32_t next = counter + 1U;
+  if (next != 0U) {
+    counter = next;
   }
 }
 
@@ -75,6 +76,9 @@ constexpr void count_up(std::uint32_t& counter) {
 /// Records one sample's status.
 constexpr void record(EventCounters& counters, Status status) {
   count_up(counters.samples);
+  if (status == 0U) {
+    return;
+  }
   if ((status & fault_mask) != 0U) {
     count_up(counters.faults);
   }

@@ -83,7 +83,7 @@ double smallest_pivot(std::size_t count, const State<Real>& state) {
   double a[2 * max_orders][2 * max_orders] = {};
   for (std::size_t i = 0; i < count; ++i) {
     for (std::size_t j = 0; j <= i; ++j) {
-      a[i][j] = static_cast<double>(state.covariance_Nm2[strainwave::detail::packed_index(i, j)]);
+      a[i][j] = static_cast<double>(state.covariance(i, j));
     }
   }
   double smallest = INFINITY;
@@ -156,9 +156,8 @@ Figures run(const Config<double>& config) {
       figures.smallest_pivot_over_q =
           std::min(figures.smallest_pivot_over_q, pivot / config.process_noise_variance_Nm2[0]);
       for (std::size_t i = 0; i < states; ++i) {
-        figures.largest_variance_Nm2 = std::max(
-            figures.largest_variance_Nm2,
-            static_cast<double>(state.covariance_Nm2[strainwave::detail::packed_index(i, i)]));
+        figures.largest_variance_Nm2 =
+            std::max(figures.largest_variance_Nm2, static_cast<double>(state.covariance(i, i)));
       }
     }
   }
