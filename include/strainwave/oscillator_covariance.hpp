@@ -2,18 +2,17 @@
 /// @file oscillator_covariance.hpp
 /// What a measurement does to states and covariance: eq. (12) to (14) in the turning frame.
 ///
-/// P is stored by columns.  Only its triangle on and below the diagonal counts.
+/// In two ways with the same operations in the same order, so that both give the same bits where
+/// products and sums are not fused.  A processor with vectors computes whole columns of P.
+/// Elsewhere only the elements on and below the diagonal are read and written.
 #pragma once
 
 #include <cstddef>
 #include <type_traits>
 
-#include "strainwave/arithmetic.hpp"
+#include "strainwave/lanes.hpp"
 
 namespace strainwave::detail {
-
-/// Elements that are summed side by side.
-inline constexpr std::size_t lane_count = 8;
 
 /// Length of a column of P.  It depends on the kind of processor alone and never on a compiler's
 /// option, so that objects compiled with different options agree on it.
@@ -38,7 +37,8 @@ template <class Real>
   return value;
 }
 
-/// Sum of the products of two rows of numbers, added to `start`.
+/// `start` and the products of two rows of numbers: those that are lane_count apart first, then
+/// halves.
 template <class Real>
 [[nodiscard]] constexpr Real sum_of_products(std::size_t count, const Real* a, const Real* b,
                                              Real start) {
@@ -55,11 +55,68 @@ template <class Real>
   return lanes[0];
 }
 
+#if defined(STRAINWAVE_LANES)
+
+/// Elements above the diagonal repeat those below it to the last bit.
+inline constexpr bool whole_columns = true;
+
+template <class Real, std::size_t Length>
+using CovarianceWithOutput = Lanes<Real, Length>;
+
+/// P C', and C P C' + R, which is returned.
+template <class Real, std::size_t Length>
+[[nodiscard]] inline Real project(std::size_t count, const Real (*p)[Length], const Real* output,
+                                  Real measurement_noise_variance_Nm2,
+                                  Lanes<Real, Length>& covariance_with_output) {
+  using Row = Lanes<Real, Length>;
+  covariance_with_output = Row::load(p[0]) * Row::all(output[0]);
+#pragma GCC unroll 8
+  for (std::size_t j = 1; j < count; ++j) {
+    covariance_with_output = covariance_with_output + Row::load(p[j]) * Row::all(output[j]);
+  }
+  const Row noise = Row::joined(1, Row::all(measurement_noise_variance_Nm2), Row::all(Real(0)));
+  return (noise + covariance_with_output * Row::load(output)).sum();
+}
+
+/// Eq. (12) to (14): states and covariance after the measurement, plus the process noise.
+template <class Real, std::size_t Length>
+inline void learn(std::size_t count, Real (*p)[Length], Real* states_Nm,
+                  const Real* process_noise_variance_Nm2,
+                  const Lanes<Real, Length>& covariance_with_output, Real per_variance,
+                  Real innovation_Nm) {
+  using Row = Lanes<Real, Length>;
+  (Row::load(states_Nm) + Row::all(per_variance * innovation_Nm) * covariance_with_output)
+      .store(states_Nm);
+  Real elements[Length];  // NOLINT(*-member-init): filled in the next line
+  covariance_with_output.store(elements);
+  const Row scale = Row::all(per_variance);
+  const Row gain = covariance_with_output * scale;
+  const Row zero = Row::all(Real(0));
+  const Row one = Row::all(Real(1));
+#pragma GCC unroll 8
+  for (std::size_t j = 0; j < count; ++j) {
+    // Gain times element on and below the diagonal; above it the same two with their parts changed.
+    const auto above = static_cast<std::ptrdiff_t>(j);
+    const Row row = Row::joined(above, covariance_with_output, gain);
+    const Row column = Row::all(elements[j]) * Row::joined(above, scale, one);
+    const Row noise = Row::joined(
+        above, zero, Row::joined(above + 1, Row::all(process_noise_variance_Nm2[j / 2]), zero));
+    (Row::load(p[j]) + noise - row * column).store(p[j]);
+  }
+}
+
+#else
+
+inline constexpr bool whole_columns = false;
+
+template <class Real, std::size_t Length>
+using CovarianceWithOutput = Real[Length];
+
 /// P C', and C P C' + R, which is returned.
 template <class Real, std::size_t Length>
 [[nodiscard]] constexpr Real project(std::size_t count, const Real (*p)[Length], const Real* output,
                                      Real measurement_noise_variance_Nm2,
-                                     Real* covariance_with_output) {
+                                     Real (&covariance_with_output)[Length]) {
   for (std::size_t i = 0; i < count; ++i) {
     covariance_with_output[i] = p[0][i] * output[0];
   }
@@ -74,8 +131,9 @@ template <class Real, std::size_t Length>
 /// Eq. (12) to (14): states and covariance after the measurement, plus the process noise.
 template <class Real, std::size_t Length>
 constexpr void learn(std::size_t count, Real (*p)[Length], Real* states_Nm,
-                     const Real* process_noise_variance_Nm2, const Real* covariance_with_output,
-                     Real per_variance, Real innovation_Nm) {
+                     const Real* process_noise_variance_Nm2,
+                     const Real (&covariance_with_output)[Length], Real per_variance,
+                     Real innovation_Nm) {
   const Real step_Nm = per_variance * innovation_Nm;
   for (std::size_t i = 0; i < count; ++i) {
     states_Nm[i] += step_Nm * covariance_with_output[i];
@@ -85,6 +143,18 @@ constexpr void learn(std::size_t count, Real (*p)[Length], Real* states_Nm,
     p[i][i] += process_noise_variance_Nm2[i / 2];
     for (std::size_t j = 0; j <= i; ++j) {
       p[j][i] -= gain * covariance_with_output[j];
+    }
+  }
+}
+
+#endif
+
+/// Repeats above the diagonal what was changed below it.
+template <class Real, std::size_t Length>
+constexpr void mirror(std::size_t count, Real (*p)[Length]) {
+  for (std::size_t i = 0; whole_columns && i < count; ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      p[i][j] = p[j][i];
     }
   }
 }

@@ -298,7 +298,7 @@ inline OscillatorReading<Real> step(const OscillatorFilterConfig<Real, MaxOrders
   } else if (by_angle) {
     reading.status |= detail::take_phase(config, state, sample.motor_phase);
   }
-  Real output[2 * MaxOrders] = {};
+  Real output[detail::column_length(2 * MaxOrders)] = {};
   detail::output_now(config, state, now, output);
   Real states_Nm[2 * MaxOrders] = {};
   for (std::size_t i = 0; i < 2 * active_orders(config); ++i) {

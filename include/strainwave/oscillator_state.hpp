@@ -105,6 +105,7 @@ constexpr void rotate(std::size_t order_count, OscillatorFilterState<Real, MaxOr
     p[i][i] = mean + difference;
     p[i + 1][i + 1] = mean - difference;
   }
+  mirror(count, p);
 }
 
 /// Scales an order's rows and columns of P so that its variances end at the limit; a congruence,
@@ -134,6 +135,9 @@ inline bool limit_variance(const OscillatorFilterConfig<Real, MaxOrders>& config
     }
     // The element shared by both rows was scaled with each of them, as it has to be.
   }
+  if (limited) {
+    mirror(state_count, p);
+  }
   return limited;
 }
 
@@ -146,6 +150,7 @@ constexpr void reset_covariance(const OscillatorFilterConfig<Real, MaxOrders>& c
       state.covariance_Nm2[j][i] = i == j ? config.initial_variance_Nm2 : Real(0);
     }
   }
+  mirror(state_count, state.covariance_Nm2);
 }
 
 /// The process noise of samples that pass without an update.
@@ -173,7 +178,8 @@ inline Status update(const OscillatorFilterConfig<Real, MaxOrders>& config,
                      OscillatorFilterState<Real, MaxOrders>& state, const Real* output,
                      Real innovation_Nm) {
   const std::size_t state_count = 2 * active_orders(config);
-  Real covariance_with_output[2 * MaxOrders];  // NOLINT(*-member-init): project() fills it
+  // NOLINTNEXTLINE(*-member-init): project() fills it
+  CovarianceWithOutput<Real, column_length(2 * MaxOrders)> covariance_with_output;
   const Real innovation_variance =
       project(state_count, state.covariance_Nm2, output, config.measurement_noise_variance_Nm2,
               covariance_with_output);

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file lanes.hpp
+/// A row of numbers that the processor computes side by side.
+///
+/// The compiler's vectors, in registers as long as the processor has them.  What is computed does
+/// not depend on their length: an operation is one of each lane alone, and a sum over lanes has one
+/// order.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+#include <utility>
+
+#if (defined(__x86_64__) || defined(__aarch64__)) && defined(__has_builtin)
+#if __has_builtin(__builtin_shufflevector)
+#define STRAINWAVE_LANES 1
+#endif
+#endif
+
+namespace strainwave::detail {
+
+/// Numbers that are summed side by side.
+inline constexpr std::size_t lane_count = 8;
+
+#if defined(STRAINWAVE_LANES)
+
+#if defined(__AVX__)
+inline constexpr std::size_t register_bytes = 32;
+#else
+inline constexpr std::size_t register_bytes = 16;
+#endif
+
+/// Lanes of one register.
+template <class Real, std::size_t Count>
+struct OneRegister {
+  using Index = std::conditional_t<sizeof(Real) == 4, std::int32_t, std::int64_t>;
+  typedef Real Vector __attribute__((vector_size(Count * sizeof(Real))));
+  typedef Index Indices __attribute__((vector_size(Count * sizeof(Real))));
+
+  Vector values;
+
+  [[nodiscard]] static OneRegister all(Real value) { return {value - Vector{}}; }
+  [[nodiscard]] static OneRegister load(const Real* from) {
+    OneRegister to;  // NOLINT(*-member-init): filled in the next line
+    __builtin_memcpy(&to.values, from, sizeof(Vector));
+    return to;
+  }
+  void store(Real* to) const { __builtin_memcpy(to, &values, sizeof(Vector)); }
+
+  OneRegister operator+(const OneRegister& other) const { return {values + other.values}; }
+  OneRegister operator-(const OneRegister& other) const { return {values - other.values}; }
+  OneRegister operator*(const OneRegister& other) const { return {values * other.values}; }
+
+  /// The first lanes of one, the others of the other.
+  [[nodiscard]] static OneRegister joined(std::ptrdiff_t first, const OneRegister& one,
+                                          const OneRegister& other) {
+    return {indices(std::make_index_sequence<Count>()) < static_cast<Index>(first) ? one.values
+                                                                                   : other.values};
+  }
+
+  /// Halves added until one number is left.
+  [[nodiscard]] Real sum() const {
+    if constexpr (Count == 8) {
+      const OneRegister<Real, 4> four = {__builtin_shufflevector(values, values, 0, 1, 2, 3) +
+                                         __builtin_shufflevector(values, values, 4, 5, 6, 7)};
+      return four.sum();
+    } else if constexpr (Count == 4) {
+      const Vector two = values + __builtin_shufflevector(values, values, 2, 3, 0, 1);
+      return (two + __builtin_shufflevector(two, two, 1, 0, 3, 2))[0];
+    } else {
+      return values[0] + values[1];
+    }
+  }
+
+ private:
+  template <std::size_t... I>
+  [[nodiscard]] static Indices indices(std::index_sequence<I...> /*lanes*/) {
+    return Indices{static_cast<Index>(I)...};
+  }
+};
+
+template <class Real, std::size_t Count>
+struct SeveralRegisters;
+
+/// `Count` numbers side by side: 2, 4, 8 or a multiple of 8.
+template <class Real, std::size_t Count>
+using Lanes = std::conditional_t<Count <= lane_count && Count * sizeof(Real) <= register_bytes,
+                                 OneRegister<Real, Count>, SeveralRegisters<Real, Count>>;
+
+/// Lanes of several registers: two halves, or the first lane_count lanes and the others.
+template <class Real, std::size_t Count>
+struct SeveralRegisters {
+  static constexpr std::size_t low_count = Count > lane_count ? lane_count : Count / 2;
+  using Low = Lanes<Real, low_count>;
+  using High = Lanes<Real, Count - low_count>;
+
+  Low low;
+  High high;
+
+  [[nodiscard]] static SeveralRegisters all(Real value) {
+    return {Low::all(value), High::all(value)};
+  }
+  [[nodiscard]] static SeveralRegisters load(const Real* from) {
+    return {Low::load(from), High::load(from + low_count)};
+  }
+  void store(Real* to) const {
+    low.store(to);
+    high.store(to + low_count);
+  }
+
+  SeveralRegisters operator+(const SeveralRegisters& other) const {
+    return {low + other.low, high + other.high};
+  }
+  SeveralRegisters operator-(const SeveralRegisters& other) const {
+    return {low - other.low, high - other.high};
+  }
+  SeveralRegisters operator*(const SeveralRegisters& other) const {
+    return {low * other.low, high * other.high};
+  }
+
+  [[nodiscard]] static SeveralRegisters joined(std::ptrdiff_t first, const SeveralRegisters& one,
+                                               const SeveralRegisters& other) {
+    return {Low::joined(first, one.low, other.low),
+            High::joined(first - static_cast<std::ptrdiff_t>(low_count), one.high, other.high)};
+  }
+
+  /// Lanes that are lane_count apart first, one after the other; then halves.
+  [[nodiscard]] Real sum() const {
+    if constexpr (Count > lane_count) {
+      return sum_of_rest(low, high).sum();
+    } else {
+      return (low + high).sum();
+    }
+  }
+
+ private:
+  template <class Rest>
+  [[nodiscard]] static Low sum_of_rest(const Low& so_far, const Rest& rest) {
+    if constexpr (std::is_same_v<Rest, Low>) {
+      return so_far + rest;
+    } else {
+      return sum_of_rest(so_far + rest.low, rest.high);
+    }
+  }
+};
+
+#endif
+
+}  // namespace strainwave::detail
