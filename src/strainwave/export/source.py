@@ -111,8 +111,8 @@ class ExportedSource:
 def state_bytes(filter_name: str, gauges: int, capacity: int, real_bytes: int) -> int:
     """Compute room for the state of a sensor on processors of 32 and of 64 bits.
 
-    Fixed parts, those of each gauge, and the filter's covariance, whose triangle grows with the
-    square of its capacity. The C++ compiler checks that it suffices.
+    Fixed parts, those of each gauge, and the filter's covariance, which grows with the square of
+    its capacity. The C++ compiler checks that it suffices.
 
     Parameters
     ----------
@@ -131,7 +131,10 @@ def state_bytes(filter_name: str, gauges: int, capacity: int, real_bytes: int) -
     if filter_name == "ripple":
         reals, fixed = 2 * capacity**2 + 8 * capacity, 432 + 58 * real_bytes
     else:
-        reals, fixed = 2 * capacity**2 + 5 * capacity, 420 + 14 * real_bytes
+        # Where the processor has vectors, columns are filled up to 2, 4 or a multiple of 8.
+        step = {1: 2, 2: 4}.get(capacity, 8)
+        column = -(-2 * capacity // step) * step
+        reals, fixed = (2 * capacity + 1) * column + capacity, 400 + 15 * real_bytes
     total = real_bytes * reals + (12 + 3 * real_bytes) * gauges + fixed
     return -(-total // 8) * 8
 
