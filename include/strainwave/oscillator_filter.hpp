@@ -167,8 +167,14 @@ constexpr void turn_on(const OscillatorFilterConfig<Real, MaxOrders>& config,
     }
     state.angle[a] += 2U * static_cast<Fraction>(static_cast<Signed>(cycles * half_range));
   }
+}
+
+/// Adds samples at the last speed to the travel, where somebody asks for it.
+template <class Real, std::size_t MaxOrders>
+constexpr void add_travel(const OscillatorFilterConfig<Real, MaxOrders>& config,
+                          OscillatorFilterState<Real, MaxOrders>& state, Real samples) {
   if (config.minimum_travel_rad > Real(0)) {
-    state.travel_rad += motor_turns * two_pi<Real>;
+    state.travel_rad += samples * (state.last_speed_rad_s * config.sample_period_s);
   }
 }
 
@@ -189,6 +195,7 @@ constexpr void carry_rotation(const OscillatorFilterConfig<Real, MaxOrders>& con
   const Real motor_turns = carried * turns_of(config, state.last_speed_rad_s);
   if (absolute(highest_order(config) * motor_turns) <= largest_rotation_turns<Real>) {
     turn_on(config, state, motor_turns, false);
+    add_travel(config, state, carried);
   }
   const Real gap_s = carried * config.sample_period_s;
   state.smoothed_speed_rad_s += gap_s / (gap_s + static_cast<Real>(speed_smoothing_s)) *
@@ -330,6 +337,9 @@ inline OscillatorReading<Real> step(const OscillatorFilterConfig<Real, MaxOrders
       state.last_torque_Nm = sample.measured_torque_Nm - reading.ripple_Nm;
     }
     detail::add_process_noise(config, state, Real(1));
+  }
+  if (!by_angle) {
+    detail::add_travel(config, state, Real(1));  // of the rotation to the next sample
   }
   reading.torque_Nm = state.last_torque_Nm;
   record(state.counters, reading.status);

@@ -178,8 +178,7 @@ inline Status update(const OscillatorFilterConfig<Real, MaxOrders>& config,
                      OscillatorFilterState<Real, MaxOrders>& state, const Real* output,
                      Real innovation_Nm) {
   const std::size_t state_count = 2 * active_orders(config);
-  // NOLINTNEXTLINE(*-member-init): project() fills it
-  CovarianceWithOutput<Real, column_length(2 * MaxOrders)> covariance_with_output;
+  CovarianceWithOutput<Real, column_length(2 * MaxOrders)> covariance_with_output = {};
   const Real innovation_variance =
       project(state_count, state.covariance_Nm2, output, config.measurement_noise_variance_Nm2,
               covariance_with_output);

@@ -115,6 +115,23 @@ TYPED_TEST(OscillatorProtection, LearningBeginsWhenTheSmoothedSpeedPassesTheLimi
   EXPECT_LE(k, 38);
 }
 
+TYPED_TEST(OscillatorProtection, EverySampleInMotionIsLearnedFrom) {
+  using Real = TypeParam;
+  for (const RotationSource source : {RotationSource::speed, RotationSource::angle}) {
+    OscillatorFilterConfig<Real, 3> config;
+    config.rotation_source = source;
+    auto state = strainwave::initial_state(config);
+    for (int k = 0; k < 2000; ++k) {
+      OscillatorSample<Real> sample;
+      sample.measured_torque_Nm = Real(1);
+      sample.motor_speed_rad_s = Real(1.5);  // 1.5 mrad a sample, and 1 mrad is asked for
+      sample.motor_phase = strainwave::phase_from_radians(1.5e-3 * k);
+      const auto reading = strainwave::step(config, state, sample);
+      ASSERT_EQ(has(reading.status, StatusFlag::at_rest), k < 21) << k;  // 50 ln 1.5 = 20.3 ms
+    }
+  }
+}
+
 TYPED_TEST(OscillatorProtection, TenMinutesOfCrawlKeepThePhase) {
   // Learned at speed, then 0.4 rad/s, below the speed at which it learns: what it learned must turn
   // with the motor for 240 rad, in float too.
