@@ -43,13 +43,16 @@ template <class Real>
 [[nodiscard]] constexpr Real sum_of_products(std::size_t count, const Real* a, const Real* b,
                                              Real start) {
   Real lanes[lane_count] = {start + a[0] * b[0]};
+#pragma GCC unroll 8
   for (std::size_t i = 1; i < count; ++i) {
     const Real product = a[i] * b[i];
     lanes[i % lane_count] = i < lane_count ? product : lanes[i % lane_count] + product;
   }
+#pragma GCC unroll 8
   for (std::size_t half = lane_count / 2; half > 0; half /= 2) {
-    for (std::size_t i = 0; i < half && i + half < count; ++i) {
-      lanes[i] += lanes[i + half];
+#pragma GCC unroll 8
+    for (std::size_t i = 0; i < half; ++i) {
+      lanes[i] = i + half < count ? lanes[i] + lanes[i + half] : lanes[i];
     }
   }
   return lanes[0];
@@ -117,10 +120,13 @@ template <class Real, std::size_t Length>
 [[nodiscard]] constexpr Real project(std::size_t count, const Real (*p)[Length], const Real* output,
                                      Real measurement_noise_variance_Nm2,
                                      Real (&covariance_with_output)[Length]) {
+#pragma GCC unroll 8
   for (std::size_t i = 0; i < count; ++i) {
     covariance_with_output[i] = p[0][i] * output[0];
   }
+#pragma GCC unroll 8
   for (std::size_t j = 1; j < count; ++j) {
+#pragma GCC unroll 8
     for (std::size_t i = 0; i < count; ++i) {
       covariance_with_output[i] += (i < j ? p[i][j] : p[j][i]) * output[j];
     }
@@ -135,12 +141,15 @@ constexpr void learn(std::size_t count, Real (*p)[Length], Real* states_Nm,
                      const Real (&covariance_with_output)[Length], Real per_variance,
                      Real innovation_Nm) {
   const Real step_Nm = per_variance * innovation_Nm;
+#pragma GCC unroll 8
   for (std::size_t i = 0; i < count; ++i) {
     states_Nm[i] += step_Nm * covariance_with_output[i];
   }
+#pragma GCC unroll 8
   for (std::size_t i = 0; i < count; ++i) {
     const Real gain = covariance_with_output[i] * per_variance;
     p[i][i] += process_noise_variance_Nm2[i / 2];
+#pragma GCC unroll 8
     for (std::size_t j = 0; j <= i; ++j) {
       p[j][i] -= gain * covariance_with_output[j];
     }
