@@ -42,9 +42,16 @@ template <class Real>
   const Real zero_V = calibration.zero_V + calibration.zero_drift_V_per_K * warmer_K;
   const Real gain = calibration.gain_Nm_per_V * (Real(1) + calibration.gain_drift_per_K * warmer_K);
   const Real linear_Nm = gain * (volts - zero_V);
+  std::size_t terms = highest_linearisation_power - 1;
+  while (terms > 0 && calibration.linearisation[terms - 1] == Real(0)) {
+    --terms;
+  }
+  if (terms == 0) {
+    return linear_Nm;
+  }
   const Real relative = linear_Nm / calibration.full_scale_Nm;
-  Real correction = Real(0);
-  for (std::size_t n = highest_linearisation_power - 1; n-- > 0;) {
+  Real correction = calibration.linearisation[terms - 1];
+  for (std::size_t n = terms - 1; n-- > 0;) {
     correction = calibration.linearisation[n] + correction * relative;
   }
   return linear_Nm + linear_Nm * relative * correction;

@@ -22,10 +22,29 @@ struct GaugeSignals {
   Phase motor_phase = {};
   bool phase_valid = true;
   bool phase_referenced = true;  ///< false: angle from an unknown zero, no prediction
+  bool some_at_end = true;       ///< false where no code is at an end of the converter's range
   std::uint32_t missing = 0;     ///< samples that never arrived before this one
 };
 
 namespace detail {
+
+/// The phase that the gauges answer to, which are behind the angle by the delay.
+template <class Real, std::size_t MaxGauges>
+[[nodiscard]] constexpr Phase phase_of_gauges(const ConsistencyCheck<Real, MaxGauges>& parity,
+                                              const GaugeSignals<Real>& signals,
+                                              Real travel_turns) {
+  if (parity.delay_samples == Real(0)) {
+    return signals.motor_phase;
+  }
+  Real behind_turns = travel_turns * parity.delay_samples;
+  if (signals.missing > 0) {
+    behind_turns /= Real(1) + static_cast<Real>(signals.missing);
+  }
+  if (behind_turns == Real(0) || absolute(behind_turns) > Real(1e6F)) {
+    return signals.motor_phase;
+  }
+  return signals.motor_phase - phase_from_turns(behind_turns);
+}
 
 /// The gauges' signals with what is known of them taken out: zeros, and the wave at its angle.
 template <class Real, std::size_t MaxGauges>
@@ -38,14 +57,7 @@ constexpr void take_out_the_known(const ConsistencyCheck<Real, MaxGauges>& parit
   if (parity.harmonic_count == 0) {
     return;
   }
-  Real behind_turns = travel_turns * parity.delay_samples;
-  if (signals.missing > 0) {
-    behind_turns /= Real(1) + static_cast<Real>(signals.missing);
-  }
-  Phase phase = signals.motor_phase;
-  if (behind_turns != Real(0) && absolute(behind_turns) <= Real(1e6F)) {
-    phase = phase - phase_from_turns(behind_turns);
-  }
+  const Phase phase = phase_of_gauges(parity, signals, travel_turns);
   // The second harmonic of the angle is the first one of the wave.
   const CosSin<Real> first =
       cos_sin_of_fraction<Real>(2U * order_fraction(phase, parity.wave_factor));
@@ -63,18 +75,16 @@ constexpr void take_out_the_known(const ConsistencyCheck<Real, MaxGauges>& parit
 template <class Real, std::size_t MaxGauges>
 struct Parity {
   Real left_V[MaxGauges] = {};
-  Real shares[MaxGauges] = {};  ///< what of a gauge's own error can be seen, squared: 0 to 1
-  Real squared_V2 = Real(0);    ///< of all gauges
-  Real torque_V = Real(0);      ///< length along the direction of the torque
+  Real squared_V2 = Real(0);  ///< of all gauges
+  Real torque_V = Real(0);    ///< length along the direction of the torque
 };
 
 template <class Real, std::size_t MaxGauges>
-[[nodiscard]] constexpr Parity<Real, MaxGauges> parity_of(
-    const ConsistencyCheck<Real, MaxGauges>& parity, std::size_t count, const Real* signal_V) {
-  Parity<Real, MaxGauges> found;
+constexpr void take_out_directions(const ConsistencyCheck<Real, MaxGauges>& parity,
+                                   std::size_t count, const Real* signal_V,
+                                   Parity<Real, MaxGauges>& found) {
   for (std::size_t j = 0; j < MaxGauges && j < count; ++j) {
     found.left_V[j] = signal_V[j];
-    found.shares[j] = Real(1);
   }
   for (std::size_t d = 0; d < most_signal_directions && d < parity.direction_count; ++d) {
     const Real* const direction = parity.directions[d];
@@ -84,14 +94,24 @@ template <class Real, std::size_t MaxGauges>
     }
     for (std::size_t j = 0; j < MaxGauges && j < count; ++j) {
       found.left_V[j] -= direction[j] * along_V;
-      found.shares[j] -= direction[j] * direction[j];
     }
     found.torque_V = d == 0 ? along_V : found.torque_V;
   }
   for (std::size_t j = 0; j < MaxGauges && j < count; ++j) {
     found.squared_V2 += found.left_V[j] * found.left_V[j];
   }
-  return found;
+}
+
+/// What of each gauge's own error can be seen, squared: 0 to 1.
+template <class Real, std::size_t MaxGauges>
+constexpr void shares_of(const ConsistencyCheck<Real, MaxGauges>& parity, std::size_t count,
+                         Real* shares) {
+  for (std::size_t j = 0; j < MaxGauges && j < count; ++j) {
+    shares[j] = Real(1);
+    for (std::size_t d = 0; d < most_signal_directions && d < parity.direction_count; ++d) {
+      shares[j] -= parity.directions[d][j] * parity.directions[d][j];
+    }
+  }
 }
 
 /// Share of a gauge's error below which nothing can be told of it.
@@ -100,43 +120,40 @@ inline constexpr float least_share = 1e-3F;
 /// Replaces a gauge by what the others say of it: nothing of its own error is left.
 template <class Real, std::size_t MaxGauges>
 constexpr void leave_out(const ConsistencyCheck<Real, MaxGauges>& parity, std::size_t count,
-                         std::size_t gauge, Parity<Real, MaxGauges>& found) {
-  if (gauge >= MaxGauges || !(found.shares[gauge] > static_cast<Real>(least_share))) {
+                         std::size_t gauge, Parity<Real, MaxGauges>& found, Real* shares) {
+  if (gauge >= MaxGauges || !(shares[gauge] > static_cast<Real>(least_share))) {
     return;
   }
-  const Real of_gauge = Real(1) / found.shares[gauge];
+  const Real of_gauge = Real(1) / shares[gauge];
   const Real error_V = found.left_V[gauge] * of_gauge;
   found.squared_V2 -= found.left_V[gauge] * error_V;
   found.torque_V -= parity.directions[0][gauge] * error_V;
   for (std::size_t j = 0; j < MaxGauges && j < count; ++j) {
-    if (j == gauge) {
-      continue;
-    }
     Real coupling = Real(0);
     for (std::size_t d = 0; d < most_signal_directions && d < parity.direction_count; ++d) {
       coupling -= parity.directions[d][j] * parity.directions[d][gauge];
     }
     found.left_V[j] -= coupling * error_V;
-    found.shares[j] -= coupling * coupling * of_gauge;
+    shares[j] -= coupling * coupling * of_gauge;
   }
   found.left_V[gauge] = Real(0);
-  found.shares[gauge] = Real(0);
+  shares[gauge] = Real(0);
 }
 
 /// The gauge whose error explains the most of what is left; count where there is none.
 template <class Real, std::size_t MaxGauges>
 [[nodiscard]] constexpr std::size_t likeliest(const Parity<Real, MaxGauges>& found,
-                                              std::size_t count) {
+                                              const Real* shares, std::size_t count) {
   std::size_t best = count;
   Real best_square = Real(0);
   Real best_share = Real(1);
   for (std::size_t j = 0; j < MaxGauges && j < count; ++j) {
     const Real square = found.left_V[j] * found.left_V[j];
-    if (found.shares[j] > static_cast<Real>(least_share) &&
-        square * best_share > best_square * found.shares[j]) {
+    if (shares[j] > static_cast<Real>(least_share) &&
+        square * best_share > best_square * shares[j]) {
       best = j;
       best_square = square;
-      best_share = found.shares[j];
+      best_share = shares[j];
     }
   }
   return best;
@@ -147,6 +164,47 @@ template <class Real, std::size_t MaxGauges>
                                               Real torque_V) {
   const Real limit_V = parity.limit_V + parity.limit_per_V * absolute(torque_V);
   return limit_V * limit_V;
+}
+
+/// The gauge that disagrees with the others.
+struct Disagreement {
+  std::size_t gauge = 0;  ///< count of the gauges where none does
+  bool several = false;   ///< no single gauge explains it: several, or the angle
+};
+
+/// Looks for the gauge that disagrees; `lost_gauge`, from 1, is one to do without.
+template <class Real, std::size_t MaxGauges>
+[[nodiscard]] constexpr Disagreement find_inconsistent(
+    const ConsistencyCheck<Real, MaxGauges>& parity, std::uint8_t lost_gauge,
+    const GaugeSignals<Real>& signals, Real travel_turns) {
+  const Disagreement none = {signals.count, false};
+  Real signal_V[MaxGauges] = {};
+  take_out_the_known(parity, signals, travel_turns, signal_V);
+  Parity<Real, MaxGauges> found;
+  take_out_directions(parity, signals.count, signal_V, found);
+  // Without a gauge less is left, and torque only widens the limit: most samples end here.
+  const Real least_limit_V2 = squared_limit_V2(parity, Real(0));
+  if (!(found.squared_V2 > least_limit_V2)) {
+    return none;
+  }
+  Real shares[MaxGauges] = {};
+  shares_of(parity, signals.count, shares);
+  if (lost_gauge > 0) {
+    leave_out(parity, signals.count, lost_gauge - 1U, found, shares);
+    if (!(found.squared_V2 > least_limit_V2)) {
+      return none;
+    }
+  }
+  // The limit is that of the torque without the suspect: a fault must not widen its own limit.
+  const Real before_V2 = found.squared_V2;
+  const std::size_t gauge = likeliest(found, shares, signals.count);
+  leave_out(parity, signals.count, gauge, found, shares);
+  const Real limit_V2 = squared_limit_V2(parity, found.torque_V);
+  if (!(before_V2 > limit_V2)) {
+    return none;
+  }
+  return found.squared_V2 > limit_V2 ? Disagreement{signals.count, true}
+                                     : Disagreement{gauge, false};
 }
 
 }  // namespace detail

@@ -22,10 +22,10 @@ namespace strainwave {
 /// What is remembered of one gauge.
 template <class Real>
 struct WatchedGauge {
-  std::int32_t last_code = 0;
+  std::int32_t last_code = 0;      ///< where repeated codes are watched
   std::uint16_t at_rail = 0;       ///< samples in a row
   std::uint16_t unchanged = 0;     ///< samples in a row, while another gauge changed
-  std::uint16_t at_zero = 0;       ///< samples in a row at the amplifier's zero
+  std::uint16_t at_zero = 0;       ///< samples in a row at the amplifier's zero, while inconsistent
   std::uint16_t inconsistent = 0;  ///< samples beyond the limit, less those within it
   Real flat_reference_V = Real(0);
   Real flat_travel_turns = Real(0);
@@ -40,6 +40,7 @@ struct GaugeMonitorState {
   std::uint8_t lost_gauge = 0;  ///< its number, from 1; 0: none
   GaugeFault fault = GaugeFault::none;
   bool more_are_lost = false;
+  bool doubted = false;  ///< some gauge counts samples beyond the limit
 };
 
 /// What the chain is to do with the sample.
@@ -74,6 +75,14 @@ template <class Real, std::size_t MaxGauges>
     return -1;
   }
   return code.value >= highest_code(converter) || volts >= config.highest_V ? 1 : 0;
+}
+
+/// Whether a rail can be met inside the converter's range.
+template <class Real, std::size_t MaxGauges>
+[[nodiscard]] constexpr bool has_rails_inside(const GaugeMonitorConfig<Real, MaxGauges>& config,
+                                              const Converter<Real>& converter) {
+  return config.lowest_V >= to_volts(converter, {converter.lowest_code}) ||
+         config.highest_V <= to_volts(converter, {highest_code(converter)});
 }
 
 [[nodiscard]] constexpr GaugeFault fault_at_rail(TornGaugeRail torn, int rail) {
@@ -126,44 +135,54 @@ constexpr Real take_phase(GaugeMonitorState<Real, MaxGauges>& state,
 }
 
 /// What one gauge shows in a sample.
-template <class Real>
 struct GaugeSight {
-  Real volts = Real(0);
   int rail = 0;             ///< -1 or 1 where it is at a rail and should not be
   bool overloaded = false;  ///< at a rail because the torque is too large
-  bool changed = true;
-  bool others_changed = true;
 };
+
+template <class Real, std::size_t MaxGauges>
+[[nodiscard]] constexpr bool is_at_zero(const GaugeMonitorConfig<Real, MaxGauges>& config,
+                                        Real volts) {
+  return absolute(volts - config.amplifier_zero_V) <= config.short_band_V;
+}
+
+/// Travel in one place: whether the gauge has stayed within the band for as long as none does.
+template <class Real, std::size_t MaxGauges>
+constexpr bool has_been_flat(const GaugeMonitorConfig<Real, MaxGauges>& config,
+                             WatchedGauge<Real>& gauge, Real volts, bool overloaded,
+                             Real travel_turns) {
+  if (!(config.flat_travel_turns > Real(0))) {
+    return false;
+  }
+  if (overloaded || absolute(volts - gauge.flat_reference_V) > config.flat_band_V) {
+    gauge.flat_reference_V = volts;
+    gauge.flat_travel_turns = Real(0);
+    return false;
+  }
+  gauge.flat_travel_turns += travel_turns;  // with its sign: an encoder that dithers stands
+  return absolute(gauge.flat_travel_turns) >= config.flat_travel_turns;
+}
 
 /// Counts what one gauge did, and says what its own signal proves.
 template <class Real, std::size_t MaxGauges>
 constexpr GaugeFault watch_alone(const GaugeMonitorConfig<Real, MaxGauges>& config,
-                                 WatchedGauge<Real>& gauge, const GaugeSight<Real>& sight,
+                                 WatchedGauge<Real>& gauge, Real volts, GaugeSight sight,
                                  Real travel_turns) {
-  const bool at_zero = absolute(sight.volts - config.amplifier_zero_V) <= config.short_band_V;
   count_in_a_row(gauge.at_rail, sight.rail != 0);
-  count_in_a_row(gauge.at_zero, at_zero);
-  if (sight.changed || sight.others_changed) {  // where all repeat their codes, nothing is said
-    count_in_a_row(gauge.unchanged, !sight.changed && !sight.overloaded);
+  if (sight.overloaded) {
+    gauge.unchanged = 0;
   }
-  if (sight.overloaded || absolute(sight.volts - gauge.flat_reference_V) > config.flat_band_V) {
-    gauge.flat_reference_V = sight.volts;
-    gauge.flat_travel_turns = Real(0);
-  } else if (absolute(gauge.flat_travel_turns) < Real(1e6F)) {
-    gauge.flat_travel_turns += travel_turns;  // with its sign: an encoder that dithers stands
-  }
-  if (config.rail_samples > 0 && gauge.at_rail >= config.rail_samples) {
-    return fault_at_rail(config.torn_gauge_rail, sight.rail);
-  }
-  if (sight.rail != 0) {
-    return GaugeFault::none;  // it stands at its rail: that has its own time
+  const bool flat = has_been_flat(config, gauge, volts, sight.overloaded, travel_turns);
+  if (sight.rail != 0) {  // that has its own time
+    return config.rail_samples > 0 && gauge.at_rail >= config.rail_samples
+               ? fault_at_rail(config.torn_gauge_rail, sight.rail)
+               : GaugeFault::none;
   }
   if (config.stuck_samples > 0 && gauge.unchanged >= config.stuck_samples) {
     return GaugeFault::stuck;
   }
-  if (config.flat_travel_turns > Real(0) &&
-      absolute(gauge.flat_travel_turns) >= config.flat_travel_turns) {
-    return at_zero ? GaugeFault::shorted : GaugeFault::stuck;
+  if (flat) {
+    return is_at_zero(config, volts) ? GaugeFault::shorted : GaugeFault::stuck;
   }
   return GaugeFault::none;
 }
@@ -183,38 +202,14 @@ template <class Real, std::size_t MaxGauges>
              : GaugeFault::inconsistent;
 }
 
-/// The gauge that disagrees with the others; count where none does.
-template <class Real, std::size_t MaxGauges>
-constexpr std::size_t find_inconsistent(const GaugeMonitorConfig<Real, MaxGauges>& config,
-                                        std::uint8_t lost_gauge, const GaugeSignals<Real>& signals,
-                                        Real travel_turns, Suspects& suspects) {
-  const ConsistencyCheck<Real, MaxGauges>& parity = config.consistency;
-  Real signal_V[MaxGauges] = {};
-  take_out_the_known(parity, signals, travel_turns, signal_V);
-  Parity<Real, MaxGauges> found = parity_of(parity, signals.count, signal_V);
-  if (lost_gauge > 0) {
-    leave_out(parity, signals.count, lost_gauge - 1U, found);
-  }
-  // The limit is that of the torque without the suspect: a fault must not widen its own limit.
-  const Real before_V2 = found.squared_V2;
-  const std::size_t gauge = likeliest(found, signals.count);
-  leave_out(parity, signals.count, gauge, found);
-  const Real limit_V2 = squared_limit_V2(parity, found.torque_V);
-  if (!(before_V2 > limit_V2)) {
-    return signals.count;
-  }
-  if (found.squared_V2 > limit_V2) {
-    suspects.all = true;  // no single gauge explains it: several, or the angle
-    return signals.count;
-  }
-  return gauge;
-}
-
 template <class Real, std::size_t MaxGauges>
 [[nodiscard]] constexpr GaugeVerdict verdict_of(const GaugeMonitorConfig<Real, MaxGauges>& config,
                                                 const GaugeMonitorState<Real, MaxGauges>& state,
                                                 const Suspects& suspects) {
   GaugeVerdict verdict;
+  if (state.lost_gauge == 0 && suspects.first == 0 && !suspects.all) {
+    return verdict;
+  }
   const bool is_lost = state.lost_gauge != 0;
   const bool another = suspects.first != 0 && suspects.first != state.lost_gauge;
   verdict.left_out = is_lost ? state.lost_gauge : suspects.first;
@@ -234,67 +229,95 @@ template <class Real>
 struct GaugeOverview {
   Real sum_V = Real(0);
   std::size_t in_use = 0;
-  std::size_t changed = 0;  ///< codes that are not those of the sample before
 };
-
-template <class Real, std::size_t MaxGauges>
-[[nodiscard]] constexpr bool has_changed(const GaugeMonitorState<Real, MaxGauges>& state,
-                                         const GaugeSignals<Real>& signals, std::size_t gauge) {
-  return !state.started || signals.codes[gauge].value != state.gauges[gauge].last_code;
-}
 
 template <class Real, std::size_t MaxGauges>
 [[nodiscard]] constexpr GaugeOverview<Real> overview_of(
     const GaugeMonitorState<Real, MaxGauges>& state, const GaugeSignals<Real>& signals) {
   GaugeOverview<Real> all;
   for (std::size_t j = 0; j < MaxGauges && j < signals.count; ++j) {
-    if (j + 1 != state.lost_gauge) {
-      all.sum_V += signals.volts[j];
-      ++all.in_use;
-      all.changed += has_changed(state, signals, j) ? 1U : 0U;
-    }
+    all.sum_V += signals.volts[j];
+  }
+  all.in_use = signals.count;
+  if (state.lost_gauge != 0) {
+    all.sum_V -= signals.volts[state.lost_gauge - 1U];
+    --all.in_use;
   }
   return all;
 }
 
-/// What gauge j shows, seen beside the others.
+/// Whether gauge j is at a rail, and whether the others say that it should be.
 template <class Real, std::size_t MaxGauges>
-[[nodiscard]] constexpr GaugeSight<Real> sight_of(const GaugeMonitorConfig<Real, MaxGauges>& config,
-                                                  const GaugeMonitorState<Real, MaxGauges>& state,
-                                                  const Converter<Real>& converter,
-                                                  const GaugeSignals<Real>& signals,
-                                                  const GaugeOverview<Real>& all,
-                                                  std::size_t gauge) {
-  GaugeSight<Real> sight;
-  sight.volts = signals.volts[gauge];
-  sight.rail = rail_of(config, converter, signals.codes[gauge], sight.volts);
-  sight.changed = has_changed(state, signals, gauge);
-  sight.others_changed = all.changed > (sight.changed ? 1U : 0U);
-  const Real others_V = (all.sum_V - sight.volts) * static_cast<Real>(sight.rail);
-  if (others_V >= config.overload_V * static_cast<Real>(all.in_use - 1)) {
-    sight.overloaded = sight.rail != 0;  // a sound gauge is there, too
-    sight.rail = 0;
+[[nodiscard]] constexpr GaugeSight sight_of(const GaugeMonitorConfig<Real, MaxGauges>& config,
+                                            const Converter<Real>& converter,
+                                            const GaugeSignals<Real>& signals,
+                                            const GaugeOverview<Real>& all, std::size_t gauge) {
+  const Real volts = signals.volts[gauge];
+  const int rail = rail_of(config, converter, signals.codes[gauge], volts);
+  if (rail == 0) {
+    return {};
   }
-  return sight;
+  const Real others_V = (all.sum_V - volts) * static_cast<Real>(rail);
+  if (others_V >= config.overload_V * static_cast<Real>(all.in_use - 1)) {
+    return {0, true};  // a sound gauge is there, too
+  }
+  return {rail, false};
 }
 
-/// Counts who disagrees with the others, and loses the one for which it has lasted.
+/// Counts for how long each gauge has repeated its code; where all repeat theirs, nothing is said.
 template <class Real, std::size_t MaxGauges>
-constexpr void compare(const GaugeMonitorConfig<Real, MaxGauges>& config,
-                       GaugeMonitorState<Real, MaxGauges>& state, const GaugeSignals<Real>& signals,
-                       Real travel_turns, const int* rails, Suspects& suspects) {
-  const std::size_t found =
-      find_inconsistent(config, state.lost_gauge, signals, travel_turns, suspects);
+constexpr void count_unchanged(GaugeMonitorState<Real, MaxGauges>& state,
+                               const GaugeSignals<Real>& signals) {
+  bool changed[MaxGauges] = {};
+  bool some_changed = false;
   for (std::size_t j = 0; j < MaxGauges && j < signals.count; ++j) {
-    std::uint16_t& count = state.gauges[j].inconsistent;
-    if (j != found) {
-      count = static_cast<std::uint16_t>(count > 0 ? count - 1 : 0);
-      continue;
+    changed[j] = !state.started || signals.codes[j].value != state.gauges[j].last_code;
+    state.gauges[j].last_code = signals.codes[j].value;
+    some_changed = some_changed || (changed[j] && j + 1 != state.lost_gauge);
+  }
+  for (std::size_t j = 0; some_changed && j < MaxGauges && j < signals.count; ++j) {
+    count_in_a_row(state.gauges[j].unchanged, !changed[j]);
+  }
+  state.started = true;
+}
+
+/// Counts for how long the gauges that are doubted have been at the amplifier's zero.
+template <class Real, std::size_t MaxGauges>
+constexpr void count_at_zero(const GaugeMonitorConfig<Real, MaxGauges>& config,
+                             GaugeMonitorState<Real, MaxGauges>& state,
+                             const GaugeSignals<Real>& signals) {
+  for (std::size_t j = 0; j < MaxGauges && j < signals.count; ++j) {
+    if (state.gauges[j].inconsistent > 0) {
+      count_in_a_row(state.gauges[j].at_zero, is_at_zero(config, signals.volts[j]));
     }
-    suspects.add(j);
-    count_in_a_row(count, true);
-    if (count >= config.consistency.samples) {
-      lose(state, j, name_of_inconsistent(config, state.gauges[j], rails[j]));
+  }
+}
+
+/// The gauge that disagrees in this sample: lost, where that has lasted.
+template <class Real, std::size_t MaxGauges>
+constexpr void accuse(const GaugeMonitorConfig<Real, MaxGauges>& config,
+                      GaugeMonitorState<Real, MaxGauges>& state, std::size_t gauge, Real volts,
+                      int rail) {
+  WatchedGauge<Real>& accused = state.gauges[gauge];
+  if (accused.inconsistent == 0) {
+    accused.at_zero = is_at_zero(config, volts) ? 1 : 0;
+  }
+  count_in_a_row(accused.inconsistent, true);
+  if (accused.inconsistent >= config.consistency.samples) {
+    lose(state, gauge, name_of_inconsistent(config, accused, rail));
+  }
+}
+
+/// Counts down for the gauges that agree with the others.
+template <class Real, std::size_t MaxGauges>
+constexpr void trust_again(GaugeMonitorState<Real, MaxGauges>& state, std::size_t count,
+                           std::size_t accused) {
+  state.doubted = accused < count;
+  for (std::size_t j = 0; j < MaxGauges && j < count; ++j) {
+    std::uint16_t& inconsistent = state.gauges[j].inconsistent;
+    if (j != accused && inconsistent > 0) {
+      --inconsistent;
+      state.doubted = state.doubted || inconsistent > 0;
     }
   }
 }
@@ -309,27 +332,45 @@ template <class Real, std::size_t MaxGauges>
                                            const GaugeSignals<Real>& signals) {
   const Real travel_turns = detail::take_phase(state, signals);
   const detail::GaugeOverview<Real> all = detail::overview_of(state, signals);
+  if (config.stuck_samples > 0) {
+    detail::count_unchanged(state, signals);
+  }
+  if (state.doubted) {
+    detail::count_at_zero(config, state, signals);
+  }
+  const bool some_at_rail = signals.some_at_end || detail::has_rails_inside(config, converter);
   const std::uint8_t lost_before = state.lost_gauge;
   detail::Suspects suspects;
-  int rails[MaxGauges] = {};
   for (std::size_t j = 0; j < MaxGauges && j < signals.count; ++j) {
-    if (j + 1 != lost_before) {
-      const detail::GaugeSight<Real> sight =
-          detail::sight_of(config, state, converter, signals, all, j);
-      rails[j] = sight.rail;
+    if (j + 1 == lost_before) {
+      continue;
+    }
+    detail::GaugeSight sight;
+    if (some_at_rail) {
+      sight = detail::sight_of(config, converter, signals, all, j);
       if (sight.rail != 0) {
         suspects.add(j);
       }
-      detail::lose(state, j, detail::watch_alone(config, state.gauges[j], sight, travel_turns));
     }
-    state.gauges[j].last_code = signals.codes[j].value;
+    detail::lose(
+        state, j,
+        detail::watch_alone(config, state.gauges[j], signals.volts[j], sight, travel_turns));
   }
-  state.started = true;
   const bool overloaded = absolute(all.sum_V) >= config.overload_V * static_cast<Real>(all.in_use);
   const bool comparable = signals.phase_valid && signals.phase_referenced;
   if (config.consistency.samples > 0 && (!overloaded || suspects.first != 0) &&
       (comparable || config.consistency.harmonic_count == 0)) {
-    detail::compare(config, state, signals, travel_turns, rails, suspects);
+    const detail::Disagreement found =
+        detail::find_inconsistent(config.consistency, state.lost_gauge, signals, travel_turns);
+    suspects.all = found.several;
+    if (found.gauge < signals.count) {
+      suspects.add(found.gauge);
+      const int rail = detail::sight_of(config, converter, signals, all, found.gauge).rail;
+      detail::accuse(config, state, found.gauge, signals.volts[found.gauge], rail);
+    }
+    if (found.gauge < signals.count || state.doubted) {
+      detail::trust_again(state, signals.count, found.gauge);
+    }
   }
   return detail::verdict_of(config, state, suspects);
 }

@@ -106,11 +106,44 @@ struct TorqueReading {
   Real residual_fluctuation_Nm = Real(0);
 };
 
+/// What the next sample is compared with: its number.
+struct SampleNumber {
+  std::uint32_t sequence = 0;
+  bool sequence_valid = true;
+};
+
+namespace detail {
+
+/// What the chain remembers of a sample: with the oscillator filter all of it, to find rows that
+/// the acquisition only repeated; the ripple filter finds these itself.
+template <class Real, std::size_t MaxGauges, class FilterConfig>
+struct Remembered {
+  using Type = TorqueSensorSample<MaxGauges, Real>;
+};
+
+template <class Real, std::size_t MaxGauges, std::size_t MaxPairs>
+struct Remembered<Real, MaxGauges, RippleFilterConfig<Real, MaxPairs>> {
+  using Type = SampleNumber;
+};
+
+template <std::size_t MaxGauges, class Real>
+constexpr void keep(SampleNumber& last, const TorqueSensorSample<MaxGauges, Real>& sample) {
+  last = {sample.sequence, sample.sequence_valid};
+}
+
+template <std::size_t MaxGauges, class Real>
+constexpr void keep(TorqueSensorSample<MaxGauges, Real>& last,
+                    const TorqueSensorSample<MaxGauges, Real>& sample) {
+  last = sample;
+}
+
+}  // namespace detail
+
 template <class Real, std::size_t MaxGauges, class FilterConfig>
 struct TorqueChainState {
   decltype(initial_state(FilterConfig{})) filter = {};
   TorqueReading<Real> last_reading = {};
-  TorqueSensorSample<MaxGauges, Real> last_sample = {};
+  typename detail::Remembered<Real, MaxGauges, FilterConfig>::Type last_sample = {};
   bool started = false;
   std::uint32_t older_in_a_row = 0;   ///< samples refused as older since the last one taken
   Real refused_interval_s = Real(0);  ///< of samples refused by number since the last one taken
@@ -205,14 +238,17 @@ template <class Real>
 [[nodiscard]] constexpr Status take_temperature(const TorqueCalibration<Real>& calibration,
                                                 Real& last_temperature_degC,
                                                 Real temperature_degC) {
+  const Real lowest_degC = calibration.minimum_temperature_degC;
+  const Real highest_degC = calibration.maximum_temperature_degC;
+  if (temperature_degC >= lowest_degC && temperature_degC <= highest_degC) {
+    last_temperature_degC = temperature_degC;
+    return 0;
+  }
   if (!is_finite(temperature_degC)) {
     return mask(StatusFlag::temperature_not_finite);
   }
-  const Real lowest_degC = calibration.minimum_temperature_degC;
-  const Real highest_degC = calibration.maximum_temperature_degC;
-  last_temperature_degC = temperature_degC < lowest_degC ? lowest_degC : temperature_degC;
-  last_temperature_degC = temperature_degC > highest_degC ? highest_degC : last_temperature_degC;
-  return last_temperature_degC == temperature_degC ? 0 : mask(StatusFlag::temperature_out_of_range);
+  last_temperature_degC = temperature_degC < lowest_degC ? lowest_degC : highest_degC;
+  return mask(StatusFlag::temperature_out_of_range);
 }
 
 // What the filters take differently follows, an overload for each.
@@ -290,22 +326,26 @@ struct GaugeSum {
   bool usable = true;
 };
 
+/// Whether a code is at an end of the range, that of the gauge left out (its number, from 1) apart.
+template <class Real, std::size_t MaxGauges>
+[[nodiscard]] constexpr bool some_saturated(const Converter<Real>& converter,
+                                            const TorqueSensorSample<MaxGauges, Real>& sample,
+                                            std::size_t gauge_count, std::size_t left_out) {
+  bool saturated = false;
+  for (std::size_t j = 0; j < MaxGauges && j < gauge_count; ++j) {
+    saturated = saturated || (is_saturated(converter, sample.codes[j]) && j + 1 != left_out);
+  }
+  return saturated;
+}
+
 /// The sum of the gauges without the one that the monitor leaves out.
 template <class Real, std::size_t MaxGauges, class FilterConfig>
 constexpr GaugeSum<Real> watched_sum(const TorqueChainConfig<Real, MaxGauges, FilterConfig>& config,
                                      TorqueChainState<Real, MaxGauges, FilterConfig>& state,
                                      const TorqueSensorSample<MaxGauges, Real>& sample,
-                                     std::uint32_t missing, const Real* volts,
+                                     const GaugeSignals<Real>& signals,
                                      TorqueReading<Real>& reading) {
   const GaugeMonitorConfig<Real, MaxGauges>& monitor = config.monitor;
-  GaugeSignals<Real> signals;
-  signals.count = active_gauges(config.gains);
-  signals.codes = sample.codes;
-  signals.volts = volts;
-  signals.motor_phase = sample.motor_phase;
-  signals.phase_valid = sample.phase_valid;
-  signals.phase_referenced = sample.phase_referenced;
-  signals.missing = missing;
   const GaugeVerdict verdict = watch(monitor, state.monitor, config.converter, signals);
   reading.status |= verdict.status;
   reading.left_out_gauge = verdict.left_out;
@@ -315,23 +355,57 @@ constexpr GaugeSum<Real> watched_sum(const TorqueChainConfig<Real, MaxGauges, Fi
   Real residual_V = monitor.residual_fluctuation_V;
   if (verdict.left_out != 0 && verdict.usable) {
     const GainsWithoutGauge<Real, MaxGauges>& others = monitor.without[verdict.left_out - 1U];
-    sum.volts = weighted_sum(others.gains, volts) - others.zero_shift_V;
+    sum.volts = weighted_sum(others.gains, signals.volts) - others.zero_shift_V;
     residual_V = others.residual_fluctuation_V;
   } else {
-    sum.volts = weighted_sum(config.gains, volts);
+    sum.volts = weighted_sum(config.gains, signals.volts);
   }
   reading.residual_fluctuation_Nm = residual_V * absolute(config.calibration.gain_Nm_per_V);
-  for (std::size_t j = 0; j < MaxGauges && j < signals.count; ++j) {
-    sum.saturated = sum.saturated ||
-                    (j + 1 != verdict.left_out && is_saturated(config.converter, sample.codes[j]));
-  }
+  sum.saturated = signals.some_at_end &&
+                  some_saturated(config.converter, sample, signals.count, verdict.left_out);
   return sum;
 }
 
-/// Faults that say that the filter has refused a row as a whole.
-inline constexpr Status refused_row_mask = mask(StatusFlag::sample_repeated) |
-                                           mask(StatusFlag::sample_out_of_order) |
-                                           mask(StatusFlag::time_not_finite);
+/// The gauges' part: the sum of their voltages, and what is to be said of them.
+template <class Real, std::size_t MaxGauges, class FilterConfig>
+constexpr GaugeSum<Real> sum_of_gauges(
+    const TorqueChainConfig<Real, MaxGauges, FilterConfig>& config,
+    TorqueChainState<Real, MaxGauges, FilterConfig>& state,
+    const TorqueSensorSample<MaxGauges, Real>& sample, bool some_at_end, std::uint32_t missing,
+    TorqueReading<Real>& reading) {
+  Real volts[MaxGauges] = {};
+  GaugeSignals<Real> signals;
+  signals.count = active_gauges(config.gains);
+  for (std::size_t j = 0; j < MaxGauges && j < signals.count; ++j) {
+    volts[j] = to_volts(config.converter, sample.codes[j]);
+  }
+  if (!config.monitor.active) {
+    return {weighted_sum(config.gains, volts), some_at_end, true};
+  }
+  signals.codes = sample.codes;
+  signals.volts = volts;
+  signals.motor_phase = sample.motor_phase;
+  signals.phase_valid = sample.phase_valid;
+  signals.phase_referenced = sample.phase_referenced;
+  signals.some_at_end = some_at_end;
+  signals.missing = missing;
+  return watched_sum(config, state, sample, signals, reading);
+}
+
+/// The last reading again, for a sample that is not taken.
+template <class Real, std::size_t MaxGauges, class FilterConfig>
+[[nodiscard]] constexpr TorqueReading<Real> refused(
+    TorqueChainState<Real, MaxGauges, FilterConfig>& state, Status status) {
+  TorqueReading<Real> reading = state.last_reading;
+  reading.status = status;
+  record(state.counters, status);
+  return reading;
+}
+
+/// Faults for which the filter has not used a torque that was valid.
+inline constexpr Status torque_unused_mask =
+    mask(StatusFlag::sample_repeated) | mask(StatusFlag::sample_out_of_order) |
+    mask(StatusFlag::time_not_finite) | mask(StatusFlag::torque_not_finite);
 
 }  // namespace detail
 
@@ -340,42 +414,28 @@ template <class Real, std::size_t MaxGauges, class FilterConfig>
 inline TorqueReading<Real> step(const TorqueChainConfig<Real, MaxGauges, FilterConfig>& config,
                                 TorqueChainState<Real, MaxGauges, FilterConfig>& state,
                                 const TorqueSensorSample<MaxGauges, Real>& sample) {
-  const std::size_t gauge_count = active_gauges(config.gains);
-  bool saturated = false;
-  for (std::size_t j = 0; j < gauge_count; ++j) {
-    saturated = saturated || is_saturated(config.converter, sample.codes[j]);
-  }
-  TorqueReading<Real> reading = state.last_reading;
-  reading.status = 0;
+  const bool some_at_end =
+      detail::some_saturated(config.converter, sample, active_gauges(config.gains), 0);
+  TorqueReading<Real> reading;
   std::uint32_t missing = 0;
   if (state.started) {
     const detail::Succession next = detail::take_number(state, sample);
-    reading.status |= next.status;
-    missing = next.missing;
     if ((next.status & fault_mask) != 0U) {
-      record(state.counters, reading.status);
-      return reading;
+      return detail::refused(state, next.status);
     }
+    reading.status = next.status;
+    missing = next.missing;
     detail::pass_over(config, state, missing);
-    if (!saturated && detail::is_held(config, state, sample)) {
-      reading.status |= mask(StatusFlag::sample_repeated);
+    if (!some_at_end && detail::is_held(config, state, sample)) {
       detail::pass_over(config, state, 1);
       state.last_sample.sequence = sample.sequence;
-      record(state.counters, reading.status);
-      return reading;
+      return detail::refused(state, next.status | mask(StatusFlag::sample_repeated));
     }
   }
   state.started = true;
-  state.last_sample = sample;
-
-  Real volts[MaxGauges] = {};
-  for (std::size_t j = 0; j < gauge_count && j < MaxGauges; ++j) {
-    volts[j] = to_volts(config.converter, sample.codes[j]);
-  }
+  detail::keep(state.last_sample, sample);
   const detail::GaugeSum<Real> sum =
-      config.monitor.active
-          ? detail::watched_sum(config, state, sample, missing, volts, reading)
-          : detail::GaugeSum<Real>{weighted_sum(config.gains, volts), saturated, true};
+      detail::sum_of_gauges(config, state, sample, some_at_end, missing, reading);
   if (sum.saturated) {
     reading.status |= mask(StatusFlag::gauge_saturated);
   }
@@ -390,10 +450,9 @@ inline TorqueReading<Real> step(const TorqueChainConfig<Real, MaxGauges, FilterC
   input.motor_phase = sample.motor_phase;
   input.phase_valid = sample.phase_valid;
   const auto filtered = step(config.filter, state.filter, input);
-  if (input.torque_valid && is_usable_torque(input.measured_torque_Nm) &&
-      (filtered.status & detail::refused_row_mask) == 0U) {
-    reading.torque_measured_Nm = input.measured_torque_Nm;
-  }
+  const bool taken = input.torque_valid && (filtered.status & detail::torque_unused_mask) == 0U;
+  reading.torque_measured_Nm =
+      taken ? input.measured_torque_Nm : state.last_reading.torque_measured_Nm;
   reading.torque_Nm = filtered.torque_Nm;
   reading.ripple_Nm = filtered.ripple_Nm;
   reading.status |= filtered.status;

@@ -232,8 +232,9 @@ template <class Real>
   // A fraction in the upper half counts down from the next turn, so that small negative
   // differences keep all their digits in float.
   const std::int64_t nearest = phase.turns + (phase.fraction >= 0x80000000U ? 1 : 0);
-  return whole_to_real<Real>(nearest) +
-         static_cast<Real>(static_cast<std::int32_t>(phase.fraction)) / Real(4294967296.0);
+  const Real part =
+      static_cast<Real>(static_cast<std::int32_t>(phase.fraction)) / Real(4294967296.0);
+  return nearest == 0 ? part : whole_to_real<Real>(nearest) + part;
 }
 
 template <class Real>
