@@ -29,16 +29,22 @@ template <class Real, std::size_t MaxGauges>
   return gains.count < MaxGauges ? gains.count : MaxGauges;
 }
 
+template <class Real, std::size_t MaxGauges>
+[[nodiscard]] constexpr Real weighted_sum(const Real (&gains)[MaxGauges], std::size_t count,
+                                          const Real* gauge_signals) {
+  Real sum = Real(0);
+  for (std::size_t j = 0; j < MaxGauges && j < count; ++j) {
+    sum += gains[j] * gauge_signals[j];
+  }
+  return sum;
+}
+
 /// h = sum_j g_j e_j, the signal of all gauges.  Godler 2000, eq. (7), with the gains of section
 /// III-B written out.
 template <class Real, std::size_t MaxGauges>
 [[nodiscard]] constexpr Real weighted_sum(const Gains<Real, MaxGauges>& gains,
                                           const Real* gauge_signals) {
-  Real sum = Real(0);
-  for (std::size_t j = 0; j < MaxGauges && j < gains.count; ++j) {
-    sum += gains.values[j] * gauge_signals[j];
-  }
-  return sum;
+  return weighted_sum(gains.values, active_gauges(gains), gauge_signals);
 }
 
 /// M sum(g^2) / (sum g)^2: by how much uneven gains raise the noise power of the sum over equal

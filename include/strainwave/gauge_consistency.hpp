@@ -22,11 +22,22 @@ struct GaugeSignals {
   Phase motor_phase = {};
   bool phase_valid = true;
   bool phase_referenced = true;  ///< false: angle from an unknown zero, no prediction
-  bool some_at_end = true;       ///< false where no code is at an end of the converter's range
   std::uint32_t missing = 0;     ///< samples that never arrived before this one
+  /// Codes at an end of the converter's range; more than there are where nobody has counted.
+  std::size_t at_end = std::size_t{256};
 };
 
 namespace detail {
+
+/// Codes at an end of the range, that of one gauge apart; its number from 1, 0: of none.
+template <class Real>
+[[nodiscard]] constexpr std::size_t at_end_beside(const Converter<Real>& converter,
+                                                  const GaugeSignals<Real>& signals,
+                                                  std::uint8_t gauge) {
+  const bool counted =
+      signals.at_end > 0 && gauge != 0 && is_saturated(converter, signals.codes[gauge - 1U]);
+  return signals.at_end - (counted ? 1U : 0U);
+}
 
 /// The phase that the gauges answer to, which are behind the angle by the delay.
 template <class Real, std::size_t MaxGauges>
@@ -102,38 +113,65 @@ constexpr void take_out_directions(const ConsistencyCheck<Real, MaxGauges>& pari
   }
 }
 
-/// What of each gauge's own error can be seen, squared: 0 to 1.
+/// What of a gauge's own error can be seen, squared: 0 to 1.
+template <class Real, std::size_t MaxGauges>
+[[nodiscard]] constexpr Real share_of(const ConsistencyCheck<Real, MaxGauges>& parity,
+                                      std::size_t gauge) {
+  Real share = Real(1);
+  for (std::size_t d = 0; d < most_signal_directions && d < parity.direction_count; ++d) {
+    share -= parity.directions[d][gauge] * parity.directions[d][gauge];
+  }
+  return share;
+}
+
 template <class Real, std::size_t MaxGauges>
 constexpr void shares_of(const ConsistencyCheck<Real, MaxGauges>& parity, std::size_t count,
                          Real* shares) {
   for (std::size_t j = 0; j < MaxGauges && j < count; ++j) {
-    shares[j] = Real(1);
-    for (std::size_t d = 0; d < most_signal_directions && d < parity.direction_count; ++d) {
-      shares[j] -= parity.directions[d][j] * parity.directions[d][j];
-    }
+    shares[j] = share_of(parity, j);
   }
 }
 
 /// Share of a gauge's error below which nothing can be told of it.
 inline constexpr float least_share = 1e-3F;
 
+/// What would be left without one gauge, whose share is known.
+template <class Real>
+struct Remainder {
+  Real error_V = Real(0);  ///< of the gauge
+  Real squared_V2 = Real(0);
+  Real torque_V = Real(0);
+};
+
+template <class Real, std::size_t MaxGauges>
+[[nodiscard]] constexpr Remainder<Real> remainder_without(
+    const ConsistencyCheck<Real, MaxGauges>& parity, std::size_t gauge,
+    const Parity<Real, MaxGauges>& found, Real share) {
+  if (!(share > static_cast<Real>(least_share))) {
+    return {Real(0), found.squared_V2, found.torque_V};
+  }
+  const Real error_V = found.left_V[gauge] * (Real(1) / share);
+  return {error_V, found.squared_V2 - found.left_V[gauge] * error_V,
+          found.torque_V - parity.directions[0][gauge] * error_V};
+}
+
 /// Replaces a gauge by what the others say of it: nothing of its own error is left.
 template <class Real, std::size_t MaxGauges>
 constexpr void leave_out(const ConsistencyCheck<Real, MaxGauges>& parity, std::size_t count,
-                         std::size_t gauge, Parity<Real, MaxGauges>& found, Real* shares) {
-  if (gauge >= MaxGauges || !(shares[gauge] > static_cast<Real>(least_share))) {
+                         std::size_t gauge, const Remainder<Real>& remainder,
+                         Parity<Real, MaxGauges>& found, Real* shares) {
+  found.squared_V2 = remainder.squared_V2;
+  found.torque_V = remainder.torque_V;
+  if (!(shares[gauge] > static_cast<Real>(least_share))) {
     return;
   }
   const Real of_gauge = Real(1) / shares[gauge];
-  const Real error_V = found.left_V[gauge] * of_gauge;
-  found.squared_V2 -= found.left_V[gauge] * error_V;
-  found.torque_V -= parity.directions[0][gauge] * error_V;
   for (std::size_t j = 0; j < MaxGauges && j < count; ++j) {
     Real coupling = Real(0);
     for (std::size_t d = 0; d < most_signal_directions && d < parity.direction_count; ++d) {
       coupling -= parity.directions[d][j] * parity.directions[d][gauge];
     }
-    found.left_V[j] -= coupling * error_V;
+    found.left_V[j] -= coupling * remainder.error_V;
     shares[j] -= coupling * coupling * of_gauge;
   }
   found.left_V[gauge] = Real(0);
@@ -172,12 +210,32 @@ struct Disagreement {
   bool several = false;   ///< no single gauge explains it: several, or the angle
 };
 
+/// The gauge that explains the most of what is left, where that is too much.
+template <class Real, std::size_t MaxGauges>
+[[nodiscard]] constexpr Disagreement disagreement_of(
+    const ConsistencyCheck<Real, MaxGauges>& parity, std::size_t count,
+    const Parity<Real, MaxGauges>& found, const Real* shares) {
+  const std::size_t gauge = likeliest(found, shares, count);
+  if (gauge == count) {
+    return {count, found.squared_V2 > squared_limit_V2(parity, found.torque_V)};
+  }
+  // The limit is that of the torque without the suspect: a fault must not widen its own limit.
+  const Remainder<Real> remainder = remainder_without(parity, gauge, found, shares[gauge]);
+  const Real limit_V2 = squared_limit_V2(parity, remainder.torque_V);
+  if (!(found.squared_V2 > limit_V2)) {
+    return {count, false};
+  }
+  if (remainder.squared_V2 > limit_V2) {
+    return {count, true};
+  }
+  return {gauge, false};
+}
+
 /// Looks for the gauge that disagrees; `lost_gauge`, from 1, is one to do without.
 template <class Real, std::size_t MaxGauges>
 [[nodiscard]] constexpr Disagreement find_inconsistent(
     const ConsistencyCheck<Real, MaxGauges>& parity, std::uint8_t lost_gauge,
     const GaugeSignals<Real>& signals, Real travel_turns) {
-  const Disagreement none = {signals.count, false};
   Real signal_V[MaxGauges] = {};
   take_out_the_known(parity, signals, travel_turns, signal_V);
   Parity<Real, MaxGauges> found;
@@ -185,26 +243,22 @@ template <class Real, std::size_t MaxGauges>
   // Without a gauge less is left, and torque only widens the limit: most samples end here.
   const Real least_limit_V2 = squared_limit_V2(parity, Real(0));
   if (!(found.squared_V2 > least_limit_V2)) {
-    return none;
+    return {signals.count, false};
   }
-  Real shares[MaxGauges] = {};
-  shares_of(parity, signals.count, shares);
+  Real shares[MaxGauges];
   if (lost_gauge > 0) {
-    leave_out(parity, signals.count, lost_gauge - 1U, found, shares);
-    if (!(found.squared_V2 > least_limit_V2)) {
-      return none;
+    const std::size_t lost = lost_gauge - 1U;
+    const Remainder<Real> remainder =
+        remainder_without(parity, lost, found, share_of(parity, lost));
+    if (!(remainder.squared_V2 > least_limit_V2)) {
+      return {signals.count, false};
     }
+    shares_of(parity, signals.count, shares);
+    leave_out(parity, signals.count, lost, remainder, found, shares);
+    return disagreement_of(parity, signals.count, found, shares);
   }
-  // The limit is that of the torque without the suspect: a fault must not widen its own limit.
-  const Real before_V2 = found.squared_V2;
-  const std::size_t gauge = likeliest(found, shares, signals.count);
-  leave_out(parity, signals.count, gauge, found, shares);
-  const Real limit_V2 = squared_limit_V2(parity, found.torque_V);
-  if (!(before_V2 > limit_V2)) {
-    return none;
-  }
-  return found.squared_V2 > limit_V2 ? Disagreement{signals.count, true}
-                                     : Disagreement{gauge, false};
+  shares_of(parity, signals.count, shares);
+  return disagreement_of(parity, signals.count, found, shares);
 }
 
 }  // namespace detail

@@ -66,23 +66,24 @@ constexpr void count_in_a_row(std::uint16_t& count, bool again) {
   }
 }
 
-/// -1 or 1 at the lower or the upper rail, 0 between.
-template <class Real, std::size_t MaxGauges>
-[[nodiscard]] constexpr int rail_of(const GaugeMonitorConfig<Real, MaxGauges>& config,
-                                    const Converter<Real>& converter, ConverterCode code,
-                                    Real volts) {
-  if (code.value <= converter.lowest_code || volts <= config.lowest_V) {
-    return -1;
-  }
-  return code.value >= highest_code(converter) || volts >= config.highest_V ? 1 : 0;
-}
-
 /// Whether a rail can be met inside the converter's range.
 template <class Real, std::size_t MaxGauges>
 [[nodiscard]] constexpr bool has_rails_inside(const GaugeMonitorConfig<Real, MaxGauges>& config,
                                               const Converter<Real>& converter) {
   return config.lowest_V >= to_volts(converter, {converter.lowest_code}) ||
          config.highest_V <= to_volts(converter, {highest_code(converter)});
+}
+
+/// -1 or 1 at the lower or the upper rail, 0 between.
+template <class Real, std::size_t MaxGauges>
+[[nodiscard]] constexpr int rail_of(const GaugeMonitorConfig<Real, MaxGauges>& config,
+                                    const Converter<Real>& converter, ConverterCode code,
+                                    Real volts) {
+  const bool by_volts = has_rails_inside(config, converter);
+  if (code.value <= converter.lowest_code || (by_volts && volts <= config.lowest_V)) {
+    return -1;
+  }
+  return code.value >= highest_code(converter) || (by_volts && volts >= config.highest_V) ? 1 : 0;
 }
 
 [[nodiscard]] constexpr GaugeFault fault_at_rail(TornGaugeRail torn, int rail) {
@@ -134,54 +135,27 @@ constexpr Real take_phase(GaugeMonitorState<Real, MaxGauges>& state,
   return travel;
 }
 
-/// What one gauge shows in a sample.
-struct GaugeSight {
-  int rail = 0;             ///< -1 or 1 where it is at a rail and should not be
-  bool overloaded = false;  ///< at a rail because the torque is too large
-};
-
 template <class Real, std::size_t MaxGauges>
 [[nodiscard]] constexpr bool is_at_zero(const GaugeMonitorConfig<Real, MaxGauges>& config,
                                         Real volts) {
   return absolute(volts - config.amplifier_zero_V) <= config.short_band_V;
 }
 
-/// Travel in one place: whether the gauge has stayed within the band for as long as none does.
+/// What a gauge's own signal proves, from what was counted; `rail`: at which it stands.
 template <class Real, std::size_t MaxGauges>
-constexpr bool has_been_flat(const GaugeMonitorConfig<Real, MaxGauges>& config,
-                             WatchedGauge<Real>& gauge, Real volts, bool overloaded,
-                             Real travel_turns) {
-  if (!(config.flat_travel_turns > Real(0))) {
-    return false;
-  }
-  if (overloaded || absolute(volts - gauge.flat_reference_V) > config.flat_band_V) {
-    gauge.flat_reference_V = volts;
-    gauge.flat_travel_turns = Real(0);
-    return false;
-  }
-  gauge.flat_travel_turns += travel_turns;  // with its sign: an encoder that dithers stands
-  return absolute(gauge.flat_travel_turns) >= config.flat_travel_turns;
-}
-
-/// Counts what one gauge did, and says what its own signal proves.
-template <class Real, std::size_t MaxGauges>
-constexpr GaugeFault watch_alone(const GaugeMonitorConfig<Real, MaxGauges>& config,
-                                 WatchedGauge<Real>& gauge, Real volts, GaugeSight sight,
-                                 Real travel_turns) {
-  count_in_a_row(gauge.at_rail, sight.rail != 0);
-  if (sight.overloaded) {
-    gauge.unchanged = 0;
-  }
-  const bool flat = has_been_flat(config, gauge, volts, sight.overloaded, travel_turns);
-  if (sight.rail != 0) {  // that has its own time
+[[nodiscard]] constexpr GaugeFault fault_alone(const GaugeMonitorConfig<Real, MaxGauges>& config,
+                                               const WatchedGauge<Real>& gauge, Real volts,
+                                               int rail) {
+  if (rail != 0) {  // that has its own time
     return config.rail_samples > 0 && gauge.at_rail >= config.rail_samples
-               ? fault_at_rail(config.torn_gauge_rail, sight.rail)
+               ? fault_at_rail(config.torn_gauge_rail, rail)
                : GaugeFault::none;
   }
   if (config.stuck_samples > 0 && gauge.unchanged >= config.stuck_samples) {
     return GaugeFault::stuck;
   }
-  if (flat) {
+  if (config.flat_travel_turns > Real(0) &&
+      absolute(gauge.flat_travel_turns) >= config.flat_travel_turns) {
     return is_at_zero(config, volts) ? GaugeFault::shorted : GaugeFault::stuck;
   }
   return GaugeFault::none;
@@ -210,15 +184,19 @@ template <class Real, std::size_t MaxGauges>
   if (state.lost_gauge == 0 && suspects.first == 0 && !suspects.all) {
     return verdict;
   }
-  const bool is_lost = state.lost_gauge != 0;
-  const bool another = suspects.first != 0 && suspects.first != state.lost_gauge;
-  verdict.left_out = is_lost ? state.lost_gauge : suspects.first;
-  verdict.status |= is_lost ? mask(StatusFlag::gauge_lost) : Status{0};
+  verdict.status = suspects.all ? mask(StatusFlag::gauges_disagree) : Status{0};
+  verdict.left_out = suspects.first;
+  bool another = suspects.first != 0;
+  verdict.usable = !suspects.several;
+  if (state.lost_gauge != 0) {
+    another = another && suspects.first != state.lost_gauge;
+    verdict.left_out = state.lost_gauge;
+    verdict.status |= mask(StatusFlag::gauge_lost);
+    verdict.usable = verdict.usable && !another && !state.more_are_lost;
+  }
   verdict.status |= another ? mask(StatusFlag::gauge_suspected) : Status{0};
-  verdict.status |= suspects.all ? mask(StatusFlag::gauges_disagree) : Status{0};
-  if (verdict.left_out != 0) {
-    verdict.usable = config.without[verdict.left_out - 1U].available && !state.more_are_lost &&
-                     !suspects.several && !(is_lost && another);
+  if (verdict.left_out != 0 && !config.without[verdict.left_out - 1U].available) {
+    verdict.usable = false;
   }
   verdict.status |= verdict.usable ? Status{0} : mask(StatusFlag::gauges_insufficient);
   return verdict;
@@ -246,28 +224,34 @@ template <class Real, std::size_t MaxGauges>
   return all;
 }
 
-/// Whether gauge j is at a rail, and whether the others say that it should be.
+/// Whether the others say that gauge j, which is at a rail, should be there.
 template <class Real, std::size_t MaxGauges>
-[[nodiscard]] constexpr GaugeSight sight_of(const GaugeMonitorConfig<Real, MaxGauges>& config,
-                                            const Converter<Real>& converter,
-                                            const GaugeSignals<Real>& signals,
-                                            const GaugeOverview<Real>& all, std::size_t gauge) {
-  const Real volts = signals.volts[gauge];
-  const int rail = rail_of(config, converter, signals.codes[gauge], volts);
-  if (rail == 0) {
-    return {};
-  }
-  const Real others_V = (all.sum_V - volts) * static_cast<Real>(rail);
-  if (others_V >= config.overload_V * static_cast<Real>(all.in_use - 1)) {
-    return {0, true};  // a sound gauge is there, too
-  }
-  return {rail, false};
+[[nodiscard]] constexpr bool is_overload(const GaugeMonitorConfig<Real, MaxGauges>& config,
+                                         const GaugeSignals<Real>& signals,
+                                         const GaugeOverview<Real>& all, std::size_t gauge,
+                                         int rail) {
+  const Real others_V = all.sum_V - signals.volts[gauge];
+  return (rail > 0 ? others_V : -others_V) >= config.overload_V * static_cast<Real>(all.in_use - 1);
 }
 
-/// Counts for how long each gauge has repeated its code; where all repeat theirs, nothing is said.
+/// -1 or 1 where gauge j is at a rail and should not be, 0 otherwise.
 template <class Real, std::size_t MaxGauges>
-constexpr void count_unchanged(GaugeMonitorState<Real, MaxGauges>& state,
-                               const GaugeSignals<Real>& signals) {
+[[nodiscard]] constexpr int faulty_rail_of(const GaugeMonitorConfig<Real, MaxGauges>& config,
+                                           const Converter<Real>& converter,
+                                           const GaugeSignals<Real>& signals,
+                                           const GaugeOverview<Real>& all, std::size_t gauge) {
+  const int rail = rail_of(config, converter, signals.codes[gauge], signals.volts[gauge]);
+  return rail != 0 && is_overload(config, signals, all, gauge, rail) ? 0 : rail;
+}
+
+// What follows counts, and says whether some gauge has come to its limit: what it is called is
+// asked then only.
+
+/// How long each gauge has repeated its code; where all repeat theirs, nothing is said.
+template <class Real, std::size_t MaxGauges>
+[[nodiscard]] constexpr bool count_unchanged(const GaugeMonitorConfig<Real, MaxGauges>& config,
+                                             GaugeMonitorState<Real, MaxGauges>& state,
+                                             const GaugeSignals<Real>& signals) {
   bool changed[MaxGauges] = {};
   bool some_changed = false;
   for (std::size_t j = 0; j < MaxGauges && j < signals.count; ++j) {
@@ -275,10 +259,90 @@ constexpr void count_unchanged(GaugeMonitorState<Real, MaxGauges>& state,
     state.gauges[j].last_code = signals.codes[j].value;
     some_changed = some_changed || (changed[j] && j + 1 != state.lost_gauge);
   }
-  for (std::size_t j = 0; some_changed && j < MaxGauges && j < signals.count; ++j) {
-    count_in_a_row(state.gauges[j].unchanged, !changed[j]);
+  bool stuck = false;
+  for (std::size_t j = 0; j < MaxGauges && j < signals.count; ++j) {
+    if (some_changed) {
+      count_in_a_row(state.gauges[j].unchanged, !changed[j]);
+    }
+    stuck =
+        stuck || (state.gauges[j].unchanged >= config.stuck_samples && j + 1 != state.lost_gauge);
   }
   state.started = true;
+  return stuck;
+}
+
+/// How far the motor has turned while each gauge stayed within its band.
+template <class Real, std::size_t MaxGauges>
+[[nodiscard]] constexpr bool count_flat(const GaugeMonitorConfig<Real, MaxGauges>& config,
+                                        GaugeMonitorState<Real, MaxGauges>& state,
+                                        const GaugeSignals<Real>& signals, Real travel_turns) {
+  bool flat = false;
+  for (std::size_t j = 0; j < MaxGauges && j < signals.count; ++j) {
+    WatchedGauge<Real>& gauge = state.gauges[j];
+    if (absolute(signals.volts[j] - gauge.flat_reference_V) > config.flat_band_V) {
+      gauge.flat_reference_V = signals.volts[j];
+      gauge.flat_travel_turns = Real(0);
+    } else {
+      gauge.flat_travel_turns += travel_turns;  // with its sign: an encoder that dithers stands
+      flat = flat || (absolute(gauge.flat_travel_turns) >= config.flat_travel_turns &&
+                      j + 1 != state.lost_gauge);
+    }
+  }
+  return flat;
+}
+
+/// How long each gauge has stood at a rail.  In an overload it is neither stuck nor flat.
+template <class Real, std::size_t MaxGauges>
+[[nodiscard]] constexpr bool count_at_rail(const GaugeMonitorConfig<Real, MaxGauges>& config,
+                                           GaugeMonitorState<Real, MaxGauges>& state,
+                                           const Converter<Real>& converter,
+                                           const GaugeSignals<Real>& signals,
+                                           const GaugeOverview<Real>& all, Suspects& suspects) {
+  bool for_good = false;
+  for (std::size_t j = 0; j < MaxGauges && j < signals.count; ++j) {
+    WatchedGauge<Real>& gauge = state.gauges[j];
+    const int rail = rail_of(config, converter, signals.codes[j], signals.volts[j]);
+    if (rail == 0 || j + 1 == state.lost_gauge) {
+      gauge.at_rail = 0;
+    } else if (is_overload(config, signals, all, j, rail)) {
+      gauge.at_rail = 0;
+      gauge.unchanged = 0;
+      gauge.flat_reference_V = signals.volts[j];
+      gauge.flat_travel_turns = Real(0);
+    } else {
+      count_in_a_row(gauge.at_rail, true);
+      suspects.add(j);
+      for_good = for_good || gauge.at_rail >= config.rail_samples;
+    }
+  }
+  return for_good;
+}
+
+/// Each gauge by itself: counts what it did, and loses those of which that proves a fault.
+template <class Real, std::size_t MaxGauges>
+constexpr void watch_alone(const GaugeMonitorConfig<Real, MaxGauges>& config,
+                           GaugeMonitorState<Real, MaxGauges>& state,
+                           const Converter<Real>& converter, const GaugeSignals<Real>& signals,
+                           const GaugeOverview<Real>& all, Real travel_turns, Suspects& suspects) {
+  bool proven = config.stuck_samples > 0 && count_unchanged(config, state, signals);
+  if (config.flat_travel_turns > Real(0)) {
+    proven = count_flat(config, state, signals, travel_turns) || proven;
+  }
+  if (at_end_beside(converter, signals, state.lost_gauge) > 0 ||
+      has_rails_inside(config, converter)) {
+    proven = count_at_rail(config, state, converter, signals, all, suspects) || proven;
+  } else {
+    for (std::size_t j = 0; j < MaxGauges && j < signals.count; ++j) {
+      state.gauges[j].at_rail = 0;
+    }
+  }
+  const std::uint8_t lost_before = state.lost_gauge;
+  for (std::size_t j = 0; proven && j < MaxGauges && j < signals.count; ++j) {
+    if (j + 1 != lost_before) {
+      const int rail = faulty_rail_of(config, converter, signals, all, j);
+      lose(state, j, fault_alone(config, state.gauges[j], signals.volts[j], rail));
+    }
+  }
 }
 
 /// Counts for how long the gauges that are doubted have been at the amplifier's zero.
@@ -293,26 +357,22 @@ constexpr void count_at_zero(const GaugeMonitorConfig<Real, MaxGauges>& config,
   }
 }
 
-/// The gauge that disagrees in this sample: lost, where that has lasted.
+/// Counts for the gauge that disagrees in this sample; whether that has lasted.
 template <class Real, std::size_t MaxGauges>
-constexpr void accuse(const GaugeMonitorConfig<Real, MaxGauges>& config,
-                      GaugeMonitorState<Real, MaxGauges>& state, std::size_t gauge, Real volts,
-                      int rail) {
-  WatchedGauge<Real>& accused = state.gauges[gauge];
-  if (accused.inconsistent == 0) {
-    accused.at_zero = is_at_zero(config, volts) ? 1 : 0;
+[[nodiscard]] constexpr bool accuse(const GaugeMonitorConfig<Real, MaxGauges>& config,
+                                    WatchedGauge<Real>& gauge, Real volts) {
+  if (gauge.inconsistent == 0) {
+    gauge.at_zero = is_at_zero(config, volts) ? 1 : 0;
   }
-  count_in_a_row(accused.inconsistent, true);
-  if (accused.inconsistent >= config.consistency.samples) {
-    lose(state, gauge, name_of_inconsistent(config, accused, rail));
-  }
+  count_in_a_row(gauge.inconsistent, true);
+  return gauge.inconsistent >= config.consistency.samples;
 }
 
 /// Counts down for the gauges that agree with the others.
 template <class Real, std::size_t MaxGauges>
 constexpr void trust_again(GaugeMonitorState<Real, MaxGauges>& state, std::size_t count,
                            std::size_t accused) {
-  state.doubted = accused < count;
+  state.doubted = false;
   for (std::size_t j = 0; j < MaxGauges && j < count; ++j) {
     std::uint16_t& inconsistent = state.gauges[j].inconsistent;
     if (j != accused && inconsistent > 0) {
@@ -332,30 +392,11 @@ template <class Real, std::size_t MaxGauges>
                                            const GaugeSignals<Real>& signals) {
   const Real travel_turns = detail::take_phase(state, signals);
   const detail::GaugeOverview<Real> all = detail::overview_of(state, signals);
-  if (config.stuck_samples > 0) {
-    detail::count_unchanged(state, signals);
-  }
   if (state.doubted) {
     detail::count_at_zero(config, state, signals);
   }
-  const bool some_at_rail = signals.some_at_end || detail::has_rails_inside(config, converter);
-  const std::uint8_t lost_before = state.lost_gauge;
   detail::Suspects suspects;
-  for (std::size_t j = 0; j < MaxGauges && j < signals.count; ++j) {
-    if (j + 1 == lost_before) {
-      continue;
-    }
-    detail::GaugeSight sight;
-    if (some_at_rail) {
-      sight = detail::sight_of(config, converter, signals, all, j);
-      if (sight.rail != 0) {
-        suspects.add(j);
-      }
-    }
-    detail::lose(
-        state, j,
-        detail::watch_alone(config, state.gauges[j], signals.volts[j], sight, travel_turns));
-  }
+  detail::watch_alone(config, state, converter, signals, all, travel_turns, suspects);
   const bool overloaded = absolute(all.sum_V) >= config.overload_V * static_cast<Real>(all.in_use);
   const bool comparable = signals.phase_valid && signals.phase_referenced;
   if (config.consistency.samples > 0 && (!overloaded || suspects.first != 0) &&
@@ -365,12 +406,16 @@ template <class Real, std::size_t MaxGauges>
     suspects.all = found.several;
     if (found.gauge < signals.count) {
       suspects.add(found.gauge);
-      const int rail = detail::sight_of(config, converter, signals, all, found.gauge).rail;
-      detail::accuse(config, state, found.gauge, signals.volts[found.gauge], rail);
+      WatchedGauge<Real>& accused = state.gauges[found.gauge];
+      if (detail::accuse(config, accused, signals.volts[found.gauge])) {
+        const int rail = detail::faulty_rail_of(config, converter, signals, all, found.gauge);
+        detail::lose(state, found.gauge, detail::name_of_inconsistent(config, accused, rail));
+      }
     }
-    if (found.gauge < signals.count || state.doubted) {
+    if (state.doubted) {
       detail::trust_again(state, signals.count, found.gauge);
     }
+    state.doubted = state.doubted || found.gauge < signals.count;
   }
   return detail::verdict_of(config, state, suspects);
 }

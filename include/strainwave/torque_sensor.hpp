@@ -326,23 +326,10 @@ struct GaugeSum {
   bool usable = true;
 };
 
-/// Whether a code is at an end of the range, that of the gauge left out (its number, from 1) apart.
-template <class Real, std::size_t MaxGauges>
-[[nodiscard]] constexpr bool some_saturated(const Converter<Real>& converter,
-                                            const TorqueSensorSample<MaxGauges, Real>& sample,
-                                            std::size_t gauge_count, std::size_t left_out) {
-  bool saturated = false;
-  for (std::size_t j = 0; j < MaxGauges && j < gauge_count; ++j) {
-    saturated = saturated || (is_saturated(converter, sample.codes[j]) && j + 1 != left_out);
-  }
-  return saturated;
-}
-
 /// The sum of the gauges without the one that the monitor leaves out.
 template <class Real, std::size_t MaxGauges, class FilterConfig>
 constexpr GaugeSum<Real> watched_sum(const TorqueChainConfig<Real, MaxGauges, FilterConfig>& config,
                                      TorqueChainState<Real, MaxGauges, FilterConfig>& state,
-                                     const TorqueSensorSample<MaxGauges, Real>& sample,
                                      const GaugeSignals<Real>& signals,
                                      TorqueReading<Real>& reading) {
   const GaugeMonitorConfig<Real, MaxGauges>& monitor = config.monitor;
@@ -355,15 +342,31 @@ constexpr GaugeSum<Real> watched_sum(const TorqueChainConfig<Real, MaxGauges, Fi
   Real residual_V = monitor.residual_fluctuation_V;
   if (verdict.left_out != 0 && verdict.usable) {
     const GainsWithoutGauge<Real, MaxGauges>& others = monitor.without[verdict.left_out - 1U];
-    sum.volts = weighted_sum(others.gains, signals.volts) - others.zero_shift_V;
+    sum.volts =
+        weighted_sum(others.gains.values, signals.count, signals.volts) - others.zero_shift_V;
     residual_V = others.residual_fluctuation_V;
   } else {
     sum.volts = weighted_sum(config.gains, signals.volts);
   }
   reading.residual_fluctuation_Nm = residual_V * absolute(config.calibration.gain_Nm_per_V);
-  sum.saturated = signals.some_at_end &&
-                  some_saturated(config.converter, sample, signals.count, verdict.left_out);
+  sum.saturated = at_end_beside(config.converter, signals, verdict.left_out) > 0;
   return sum;
+}
+
+/// Codes to volts; how many of them are at an end of the range.
+template <class Real, std::size_t MaxGauges, class FilterConfig>
+[[nodiscard]] constexpr std::size_t read_gauges(
+    const TorqueChainConfig<Real, MaxGauges, FilterConfig>& config,
+    const TorqueSensorSample<MaxGauges, Real>& sample, Real* volts) {
+  std::size_t at_end = 0;
+  for (std::size_t j = 0; j < active_gauges(config.gains); ++j) {
+    const ConverterCode code = sample.codes[j];
+    volts[j] = to_volts(config.converter, code);
+    if (is_saturated(config.converter, code)) {
+      ++at_end;
+    }
+  }
+  return at_end;
 }
 
 /// The gauges' part: the sum of their voltages, and what is to be said of them.
@@ -371,25 +374,21 @@ template <class Real, std::size_t MaxGauges, class FilterConfig>
 constexpr GaugeSum<Real> sum_of_gauges(
     const TorqueChainConfig<Real, MaxGauges, FilterConfig>& config,
     TorqueChainState<Real, MaxGauges, FilterConfig>& state,
-    const TorqueSensorSample<MaxGauges, Real>& sample, bool some_at_end, std::uint32_t missing,
-    TorqueReading<Real>& reading) {
-  Real volts[MaxGauges] = {};
+    const TorqueSensorSample<MaxGauges, Real>& sample, const Real* volts, std::size_t at_end,
+    std::uint32_t missing, TorqueReading<Real>& reading) {
+  if (!config.monitor.active) {
+    return {weighted_sum(config.gains, volts), at_end > 0, true};
+  }
   GaugeSignals<Real> signals;
   signals.count = active_gauges(config.gains);
-  for (std::size_t j = 0; j < MaxGauges && j < signals.count; ++j) {
-    volts[j] = to_volts(config.converter, sample.codes[j]);
-  }
-  if (!config.monitor.active) {
-    return {weighted_sum(config.gains, volts), some_at_end, true};
-  }
   signals.codes = sample.codes;
   signals.volts = volts;
   signals.motor_phase = sample.motor_phase;
   signals.phase_valid = sample.phase_valid;
   signals.phase_referenced = sample.phase_referenced;
-  signals.some_at_end = some_at_end;
+  signals.at_end = at_end;
   signals.missing = missing;
-  return watched_sum(config, state, sample, signals, reading);
+  return watched_sum(config, state, signals, reading);
 }
 
 /// The last reading again, for a sample that is not taken.
@@ -414,19 +413,16 @@ template <class Real, std::size_t MaxGauges, class FilterConfig>
 inline TorqueReading<Real> step(const TorqueChainConfig<Real, MaxGauges, FilterConfig>& config,
                                 TorqueChainState<Real, MaxGauges, FilterConfig>& state,
                                 const TorqueSensorSample<MaxGauges, Real>& sample) {
-  const bool some_at_end =
-      detail::some_saturated(config.converter, sample, active_gauges(config.gains), 0);
-  TorqueReading<Real> reading;
-  std::uint32_t missing = 0;
+  Real volts[MaxGauges] = {};
+  const std::size_t at_end = detail::read_gauges(config, sample, volts);
+  detail::Succession next;
   if (state.started) {
-    const detail::Succession next = detail::take_number(state, sample);
+    next = detail::take_number(state, sample);
     if ((next.status & fault_mask) != 0U) {
       return detail::refused(state, next.status);
     }
-    reading.status = next.status;
-    missing = next.missing;
-    detail::pass_over(config, state, missing);
-    if (!some_at_end && detail::is_held(config, state, sample)) {
+    detail::pass_over(config, state, next.missing);
+    if (at_end == 0 && detail::is_held(config, state, sample)) {
       detail::pass_over(config, state, 1);
       state.last_sample.sequence = sample.sequence;
       return detail::refused(state, next.status | mask(StatusFlag::sample_repeated));
@@ -434,15 +430,17 @@ inline TorqueReading<Real> step(const TorqueChainConfig<Real, MaxGauges, FilterC
   }
   state.started = true;
   detail::keep(state.last_sample, sample);
+  TorqueReading<Real>& reading = state.last_reading;
+  reading.status = next.status;
   const detail::GaugeSum<Real> sum =
-      detail::sum_of_gauges(config, state, sample, some_at_end, missing, reading);
+      detail::sum_of_gauges(config, state, sample, volts, at_end, next.missing, reading);
   if (sum.saturated) {
     reading.status |= mask(StatusFlag::gauge_saturated);
   }
   reading.status |= detail::take_temperature(config.calibration, state.last_temperature_degC,
                                              sample.temperature_degC);
 
-  auto input = detail::filter_sample(config, state, sample, missing);
+  auto input = detail::filter_sample(config, state, sample, next.missing);
   input.torque_valid = !sum.saturated && sum.usable;
   input.measured_torque_Nm =
       torque_of_volts_Nm(config.calibration, sum.volts, state.last_temperature_degC);
@@ -450,13 +448,12 @@ inline TorqueReading<Real> step(const TorqueChainConfig<Real, MaxGauges, FilterC
   input.motor_phase = sample.motor_phase;
   input.phase_valid = sample.phase_valid;
   const auto filtered = step(config.filter, state.filter, input);
-  const bool taken = input.torque_valid && (filtered.status & detail::torque_unused_mask) == 0U;
-  reading.torque_measured_Nm =
-      taken ? input.measured_torque_Nm : state.last_reading.torque_measured_Nm;
+  if (input.torque_valid && (filtered.status & detail::torque_unused_mask) == 0U) {
+    reading.torque_measured_Nm = input.measured_torque_Nm;
+  }
   reading.torque_Nm = filtered.torque_Nm;
   reading.ripple_Nm = filtered.ripple_Nm;
   reading.status |= filtered.status;
-  state.last_reading = reading;
   record(state.counters, reading.status);
   return reading;
 }
