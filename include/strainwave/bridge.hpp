@@ -156,10 +156,10 @@ template <class Real>
 
 template <class Real>
 [[nodiscard]] constexpr Real to_volts(const Converter<Real>& converter, ConverterCode code) {
-  // Each by itself: the difference of two whole numbers could overflow for a code out of range.
-  return converter.minimum_V +
-         (static_cast<Real>(code.value) - static_cast<Real>(converter.lowest_code)) *
-             step_V(converter);
+  // What code 0 stands for does not change: a product and a sum are left for each code.
+  const Real volts_of_0 =
+      converter.minimum_V - static_cast<Real>(converter.lowest_code) * step_V(converter);
+  return volts_of_0 + static_cast<Real>(code.value) * step_V(converter);
 }
 
 /// True at either end of the range, where the input may lie anywhere beyond, and outside it.

@@ -210,17 +210,14 @@ struct Disagreement {
   bool several = false;   ///< no single gauge explains it: several, or the angle
 };
 
-/// The gauge that explains the most of what is left, where that is too much.
+/// Whether too much is left, and whether one gauge's error explains it.
 template <class Real, std::size_t MaxGauges>
-[[nodiscard]] constexpr Disagreement disagreement_of(
-    const ConsistencyCheck<Real, MaxGauges>& parity, std::size_t count,
-    const Parity<Real, MaxGauges>& found, const Real* shares) {
-  const std::size_t gauge = likeliest(found, shares, count);
-  if (gauge == count) {
-    return {count, found.squared_V2 > squared_limit_V2(parity, found.torque_V)};
-  }
+[[nodiscard]] constexpr Disagreement explained_by(const ConsistencyCheck<Real, MaxGauges>& parity,
+                                                  std::size_t count, std::size_t gauge,
+                                                  const Parity<Real, MaxGauges>& found,
+                                                  Real share) {
   // The limit is that of the torque without the suspect: a fault must not widen its own limit.
-  const Remainder<Real> remainder = remainder_without(parity, gauge, found, shares[gauge]);
+  const Remainder<Real> remainder = remainder_without(parity, gauge, found, share);
   const Real limit_V2 = squared_limit_V2(parity, remainder.torque_V);
   if (!(found.squared_V2 > limit_V2)) {
     return {count, false};
@@ -231,10 +228,30 @@ template <class Real, std::size_t MaxGauges>
   return {gauge, false};
 }
 
-/// Looks for the gauge that disagrees; `lost_gauge`, from 1, is one to do without.
+/// The gauge that explains too much that is left: the one that is suspected already where it does,
+/// else the one that explains the most.
+template <class Real, std::size_t MaxGauges>
+[[nodiscard]] constexpr Disagreement disagreement_of(
+    const ConsistencyCheck<Real, MaxGauges>& parity, std::size_t count, std::size_t suspect,
+    const Parity<Real, MaxGauges>& found, const Real* shares) {
+  if (suspect < count) {
+    const Disagreement by_suspect = explained_by(parity, count, suspect, found, shares[suspect]);
+    if (!by_suspect.several) {
+      return by_suspect;
+    }
+  }
+  const std::size_t gauge = likeliest(found, shares, count);
+  if (gauge == count) {
+    return {count, found.squared_V2 > squared_limit_V2(parity, found.torque_V)};
+  }
+  return explained_by(parity, count, gauge, found, shares[gauge]);
+}
+
+/// Looks for the gauge that disagrees; `lost_gauge`, from 1, is one to do without, `suspect` one
+/// whose own signal is wrong, count where there is none.
 template <class Real, std::size_t MaxGauges>
 [[nodiscard]] constexpr Disagreement find_inconsistent(
-    const ConsistencyCheck<Real, MaxGauges>& parity, std::uint8_t lost_gauge,
+    const ConsistencyCheck<Real, MaxGauges>& parity, std::uint8_t lost_gauge, std::size_t suspect,
     const GaugeSignals<Real>& signals, Real travel_turns) {
   Real signal_V[MaxGauges] = {};
   take_out_the_known(parity, signals, travel_turns, signal_V);
@@ -255,10 +272,10 @@ template <class Real, std::size_t MaxGauges>
     }
     shares_of(parity, signals.count, shares);
     leave_out(parity, signals.count, lost, remainder, found, shares);
-    return disagreement_of(parity, signals.count, found, shares);
+    return disagreement_of(parity, signals.count, suspect, found, shares);
   }
   shares_of(parity, signals.count, shares);
-  return disagreement_of(parity, signals.count, found, shares);
+  return disagreement_of(parity, signals.count, suspect, found, shares);
 }
 
 }  // namespace detail

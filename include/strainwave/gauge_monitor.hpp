@@ -401,8 +401,10 @@ template <class Real, std::size_t MaxGauges>
   const bool comparable = signals.phase_valid && signals.phase_referenced;
   if (config.consistency.samples > 0 && (!overloaded || suspects.first != 0) &&
       (comparable || config.consistency.harmonic_count == 0)) {
-    const detail::Disagreement found =
-        detail::find_inconsistent(config.consistency, state.lost_gauge, signals, travel_turns);
+    const std::size_t suspect =
+        suspects.first == 0 || suspects.several ? signals.count : suspects.first - 1U;
+    const detail::Disagreement found = detail::find_inconsistent(
+        config.consistency, state.lost_gauge, suspect, signals, travel_turns);
     suspects.all = found.several;
     if (found.gauge < signals.count) {
       suspects.add(found.gauge);

@@ -324,33 +324,29 @@ struct GaugeSum {
   Real volts = Real(0);
   bool saturated = false;  ///< of the gauges in use
   bool usable = true;
+  Status status = 0;
 };
 
 /// The sum of the gauges without the one that the monitor leaves out.
 template <class Real, std::size_t MaxGauges, class FilterConfig>
 constexpr GaugeSum<Real> watched_sum(const TorqueChainConfig<Real, MaxGauges, FilterConfig>& config,
                                      TorqueChainState<Real, MaxGauges, FilterConfig>& state,
-                                     const GaugeSignals<Real>& signals,
-                                     TorqueReading<Real>& reading) {
+                                     const GaugeSignals<Real>& signals) {
   const GaugeMonitorConfig<Real, MaxGauges>& monitor = config.monitor;
-  const GaugeVerdict verdict = watch(monitor, state.monitor, config.converter, signals);
-  reading.status |= verdict.status;
-  reading.left_out_gauge = verdict.left_out;
-  reading.gauge_fault = state.monitor.fault;
-  GaugeSum<Real> sum;
-  sum.usable = verdict.usable;
+  Real volts = weighted_sum(config.gains, signals.volts);
   Real residual_V = monitor.residual_fluctuation_V;
+  const GaugeVerdict verdict = watch(monitor, state.monitor, config.converter, signals);
   if (verdict.left_out != 0 && verdict.usable) {
     const GainsWithoutGauge<Real, MaxGauges>& others = monitor.without[verdict.left_out - 1U];
-    sum.volts =
-        weighted_sum(others.gains.values, signals.count, signals.volts) - others.zero_shift_V;
+    volts = weighted_sum(others.gains.values, signals.count, signals.volts) - others.zero_shift_V;
     residual_V = others.residual_fluctuation_V;
-  } else {
-    sum.volts = weighted_sum(config.gains, signals.volts);
   }
-  reading.residual_fluctuation_Nm = residual_V * absolute(config.calibration.gain_Nm_per_V);
-  sum.saturated = at_end_beside(config.converter, signals, verdict.left_out) > 0;
-  return sum;
+  state.last_reading.left_out_gauge = verdict.left_out;
+  state.last_reading.gauge_fault = state.monitor.fault;
+  state.last_reading.residual_fluctuation_Nm =
+      residual_V * absolute(config.calibration.gain_Nm_per_V);
+  const bool saturated = at_end_beside(config.converter, signals, verdict.left_out) > 0;
+  return {volts, saturated, verdict.usable, verdict.status};
 }
 
 /// Codes to volts; how many of them are at an end of the range.
@@ -369,15 +365,15 @@ template <class Real, std::size_t MaxGauges, class FilterConfig>
   return at_end;
 }
 
-/// The gauges' part: the sum of their voltages, and what is to be said of them.
+/// The gauges' part: the sum of their voltages, and what the reading says of them.
 template <class Real, std::size_t MaxGauges, class FilterConfig>
 constexpr GaugeSum<Real> sum_of_gauges(
     const TorqueChainConfig<Real, MaxGauges, FilterConfig>& config,
     TorqueChainState<Real, MaxGauges, FilterConfig>& state,
     const TorqueSensorSample<MaxGauges, Real>& sample, const Real* volts, std::size_t at_end,
-    std::uint32_t missing, TorqueReading<Real>& reading) {
+    std::uint32_t missing) {
   if (!config.monitor.active) {
-    return {weighted_sum(config.gains, volts), at_end > 0, true};
+    return {weighted_sum(config.gains, volts), at_end > 0, true, 0};
   }
   GaugeSignals<Real> signals;
   signals.count = active_gauges(config.gains);
@@ -388,7 +384,7 @@ constexpr GaugeSum<Real> sum_of_gauges(
   signals.phase_referenced = sample.phase_referenced;
   signals.at_end = at_end;
   signals.missing = missing;
-  return watched_sum(config, state, signals, reading);
+  return watched_sum(config, state, signals);
 }
 
 /// The last reading again, for a sample that is not taken.
@@ -430,15 +426,12 @@ inline TorqueReading<Real> step(const TorqueChainConfig<Real, MaxGauges, FilterC
   }
   state.started = true;
   detail::keep(state.last_sample, sample);
-  TorqueReading<Real>& reading = state.last_reading;
-  reading.status = next.status;
   const detail::GaugeSum<Real> sum =
-      detail::sum_of_gauges(config, state, sample, volts, at_end, next.missing, reading);
-  if (sum.saturated) {
-    reading.status |= mask(StatusFlag::gauge_saturated);
-  }
-  reading.status |= detail::take_temperature(config.calibration, state.last_temperature_degC,
-                                             sample.temperature_degC);
+      detail::sum_of_gauges(config, state, sample, volts, at_end, next.missing);
+  Status status = next.status | sum.status;
+  status |= sum.saturated ? mask(StatusFlag::gauge_saturated) : Status{0};
+  status |= detail::take_temperature(config.calibration, state.last_temperature_degC,
+                                     sample.temperature_degC);
 
   auto input = detail::filter_sample(config, state, sample, next.missing);
   input.torque_valid = !sum.saturated && sum.usable;
@@ -448,12 +441,13 @@ inline TorqueReading<Real> step(const TorqueChainConfig<Real, MaxGauges, FilterC
   input.motor_phase = sample.motor_phase;
   input.phase_valid = sample.phase_valid;
   const auto filtered = step(config.filter, state.filter, input);
+  TorqueReading<Real>& reading = state.last_reading;
   if (input.torque_valid && (filtered.status & detail::torque_unused_mask) == 0U) {
     reading.torque_measured_Nm = input.measured_torque_Nm;
   }
   reading.torque_Nm = filtered.torque_Nm;
   reading.ripple_Nm = filtered.ripple_Nm;
-  reading.status |= filtered.status;
+  reading.status = status | filtered.status;
   record(state.counters, reading.status);
   return reading;
 }
