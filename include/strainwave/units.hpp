@@ -253,12 +253,8 @@ template <class Real>
   const std::uint32_t high = upper / order.denominator;
   const std::uint32_t lower = ((upper - high * order.denominator) << 16U) | (fraction & 0xFFFFU);
   const std::uint32_t low = lower / order.denominator;
-  const std::uint32_t quotient = (high << 16U) + low;
-  if (order.numerator == 1) {  // once per output turn, most often
-    return quotient;
-  }
   const std::uint32_t remainder = lower - low * order.denominator;
-  return quotient * order.numerator + remainder * order.numerator / order.denominator;
+  return ((high << 16U) + low) * order.numerator + remainder * order.numerator / order.denominator;
 }
 
 /// Phase of an order, as a fraction of its cycle in units of 2^-32: order x angle, modulo one.
