@@ -107,7 +107,7 @@ template <class Real, std::size_t MaxGauges, class FilterConfig>
 struct TorqueChainState {
   decltype(initial_state(FilterConfig{})) filter = {};
   TorqueReading<Real> last_reading = {};
-  typename detail::Remembered<Real, MaxGauges, FilterConfig>::Type last_sample = {};
+  detail::Remembered<Real, MaxGauges, FilterConfig>::Type last_sample = {};
   bool started = false;
   std::uint32_t older_in_a_row = 0;   ///< samples refused as older since the last one taken
   Real refused_interval_s = Real(0);  ///< of samples refused by number since the last one taken

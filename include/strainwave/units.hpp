@@ -212,10 +212,11 @@ template <class Real>
 }
 
 [[nodiscard]] constexpr Phase operator-(Phase a, Phase b) {
-  const std::uint64_t borrow = a.fraction < b.fraction ? 1 : 0;
-  const std::uint64_t turns =
-      static_cast<std::uint64_t>(a.turns) - static_cast<std::uint64_t>(b.turns) - borrow;
-  return {static_cast<std::int64_t>(turns), a.fraction - b.fraction};
+  const std::int64_t units = std::int64_t{a.fraction} - std::int64_t{b.fraction};
+  const std::uint64_t turns = static_cast<std::uint64_t>(a.turns) -
+                              static_cast<std::uint64_t>(b.turns) +
+                              static_cast<std::uint64_t>(units >> 32U);  // 0 or -1
+  return {static_cast<std::int64_t>(turns), static_cast<std::uint32_t>(units)};
 }
 
 /// A whole number as Real; the short way where it fits in 32 bits, with the same result.
@@ -231,10 +232,12 @@ template <class Real>
 [[nodiscard]] constexpr Real to_turns(Phase phase) {
   // A fraction in the upper half counts down from the next turn, so that small negative
   // differences keep all their digits in float.
-  const std::int64_t nearest = phase.turns + (phase.fraction >= 0x80000000U ? 1 : 0);
-  const Real part =
-      static_cast<Real>(static_cast<std::int32_t>(phase.fraction)) / Real(4294967296.0);
-  return nearest == 0 ? part : whole_to_real<Real>(nearest) + part;
+  const auto fraction = static_cast<std::int32_t>(phase.fraction);
+  const Real part = static_cast<Real>(fraction) / Real(4294967296.0);
+  if (phase.turns == std::int64_t{fraction >> 31U}) {
+    return part;
+  }
+  return whole_to_real<Real>(phase.turns + (fraction < 0 ? 1 : 0)) + part;
 }
 
 template <class Real>
