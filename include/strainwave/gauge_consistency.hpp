@@ -228,18 +228,11 @@ template <class Real, std::size_t MaxGauges>
   return {gauge, false};
 }
 
-/// The gauge that explains too much that is left: the one that is suspected already where it does,
-/// else the one that explains the most.
+/// The gauge that explains the most of what is left, where that is too much.
 template <class Real, std::size_t MaxGauges>
 [[nodiscard]] constexpr Disagreement disagreement_of(
-    const ConsistencyCheck<Real, MaxGauges>& parity, std::size_t count, std::size_t suspect,
+    const ConsistencyCheck<Real, MaxGauges>& parity, std::size_t count,
     const Parity<Real, MaxGauges>& found, const Real* shares) {
-  if (suspect < count) {
-    const Disagreement by_suspect = explained_by(parity, count, suspect, found, shares[suspect]);
-    if (!by_suspect.several) {
-      return by_suspect;
-    }
-  }
   const std::size_t gauge = likeliest(found, shares, count);
   if (gauge == count) {
     return {count, found.squared_V2 > squared_limit_V2(parity, found.torque_V)};
@@ -248,7 +241,7 @@ template <class Real, std::size_t MaxGauges>
 }
 
 /// Looks for the gauge that disagrees; `lost_gauge`, from 1, is one to do without, `suspect` one
-/// whose own signal is wrong, count where there is none.
+/// whose own signal is wrong, count where there is none: that one is asked first.
 template <class Real, std::size_t MaxGauges>
 [[nodiscard]] constexpr Disagreement find_inconsistent(
     const ConsistencyCheck<Real, MaxGauges>& parity, std::uint8_t lost_gauge, std::size_t suspect,
@@ -272,10 +265,17 @@ template <class Real, std::size_t MaxGauges>
     }
     shares_of(parity, signals.count, shares);
     leave_out(parity, signals.count, lost, remainder, found, shares);
-    return disagreement_of(parity, signals.count, suspect, found, shares);
+    return disagreement_of(parity, signals.count, found, shares);
+  }
+  if (suspect < signals.count) {
+    const Disagreement by_suspect =
+        explained_by(parity, signals.count, suspect, found, share_of(parity, suspect));
+    if (!by_suspect.several) {
+      return by_suspect;
+    }
   }
   shares_of(parity, signals.count, shares);
-  return disagreement_of(parity, signals.count, suspect, found, shares);
+  return disagreement_of(parity, signals.count, found, shares);
 }
 
 }  // namespace detail

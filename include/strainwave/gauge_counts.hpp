@@ -244,7 +244,9 @@ template <class Real, std::size_t MaxGauges>
     } else {
       count_in_a_row(gauge.at_rail, true);
       suspects.add(j);
-      for_good = for_good || gauge.at_rail >= config.rail_samples;
+      if (gauge.at_rail >= config.rail_samples) {
+        for_good = true;
+      }
     }
   }
   return for_good;

@@ -140,7 +140,9 @@ constexpr void compare(const GaugeMonitorConfig<Real, MaxGauges>& config,
       find_inconsistent(config.consistency, state.lost_gauge, suspect, signals, travel_turns);
   suspects.all = found.several;
   if (found.gauge < signals.count) {
-    suspects.add(found.gauge);
+    if (found.gauge != suspect) {
+      suspects.add(found.gauge);
+    }
     WatchedGauge<Real>& accused = state.gauges[found.gauge];
     if (accuse(config, accused, signals.volts[found.gauge])) {
       const int rail = faulty_rail_of(config, converter, signals, all, found.gauge);
