@@ -28,8 +28,8 @@ std::pair<VectorOut<double>, VectorOut<double>> strain_of_rosette(
   const std::size_t size = radial.shape(0);
   require_same_length("circumferential", circumferential.shape(0), "radial", size);
   require_same_length("shear", shear.shape(0), "radial", size);
-  NewVector<double> first(size);
-  NewVector<double> second(size);
+  FilledVector<double> first(size);
+  FilledVector<double> second(size);
   for (std::size_t k = 0; k < size; ++k) {
     const RosetteStrain<double> strain =
         rosette_strain(rosette, {radial.data()[k], circumferential.data()[k], shear.data()[k]});
@@ -62,7 +62,7 @@ VectorOut<double> half_bridge(const RosetteD& rosette, const nb::handle& first_s
   const double supply_V = to_supply_V(supply);
   const std::size_t size = first.shape(0);
   require_same_length("second", second.shape(0), "first", size);
-  NewVector<double> out(size);
+  FilledVector<double> out(size);
   for (std::size_t k = 0; k < size; ++k) {
     out.data()[k] = half_bridge_V(
         rosette.gauge_factor, RosetteStrain<double>{first.data()[k], second.data()[k]}, supply_V);
@@ -84,7 +84,7 @@ VectorOut<double> full_bridge(const nb::handle& list_of_rosettes, const nb::hand
     raise_input_error("rosettes has " + std::to_string(rosettes.size()) +
                       " elements: expected at least 2; a single rosette is a half bridge");
   }
-  NewVector<double> out(size);
+  FilledVector<double> out(size);
   std::vector<RosetteStrain<double>> strains(rosettes.size());
   for (std::size_t k = 0; k < size; ++k) {
     for (std::size_t j = 0; j < rosettes.size(); ++j) {
@@ -174,7 +174,7 @@ void bind_bridge(nb::module_& m) {
           "amplified_V",
           [](const AmplifierD& self, const nb::handle& values) {
             const auto input_V = to_vector<double>(values, "input_V");
-            NewVector<double> out(input_V.shape(0));
+            FilledVector<double> out(input_V.shape(0));
             for (std::size_t k = 0; k < input_V.shape(0); ++k) {
               out.data()[k] = amplified_V(self, input_V.data()[k]);
             }
@@ -219,7 +219,7 @@ void bind_bridge(nb::module_& m) {
           "to_code",
           [](const ConverterD& self, const nb::handle& values) {
             const auto input_V = to_vector<double>(values, "input_V");
-            NewVector<std::int32_t> out(input_V.shape(0));
+            FilledVector<std::int32_t> out(input_V.shape(0));
             for (std::size_t k = 0; k < input_V.shape(0); ++k) {
               out.data()[k] = to_code(self, input_V.data()[k]).value;
             }
@@ -232,7 +232,7 @@ void bind_bridge(nb::module_& m) {
           "to_volts",
           [](const ConverterD& self, const nb::handle& values) {
             const auto codes = to_vector<std::int32_t>(values, "codes");
-            NewVector<double> out(codes.shape(0));
+            FilledVector<double> out(codes.shape(0));
             for (std::size_t k = 0; k < codes.shape(0); ++k) {
               out.data()[k] = to_volts(self, ConverterCode{codes.data()[k]});
             }
@@ -245,7 +245,7 @@ void bind_bridge(nb::module_& m) {
           "is_saturated",
           [](const ConverterD& self, const nb::handle& values) {
             const auto codes = to_vector<std::int32_t>(values, "codes");
-            NewVector<bool> out(codes.shape(0));
+            FilledVector<bool> out(codes.shape(0));
             for (std::size_t k = 0; k < codes.shape(0); ++k) {
               out.data()[k] = is_saturated(self, ConverterCode{codes.data()[k]});
             }

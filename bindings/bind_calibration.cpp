@@ -94,7 +94,7 @@ void bind_calibration(nb::module_& m) {
             const auto temperature_degC = to_vector<double>(temperatures, "temperature_degC");
             require_same_length("temperature_degC", temperature_degC.shape(0), "volts",
                                 volts.shape(0));
-            NewVector<double> out(volts.shape(0));
+            FilledVector<double> out(volts.shape(0));
             for (std::size_t k = 0; k < volts.shape(0); ++k) {
               out.data()[k] = torque_of_volts_Nm(self, volts.data()[k], temperature_degC.data()[k]);
             }

@@ -58,7 +58,7 @@ void bind_fluctuation(nb::module_& m) {
           [](const Gauge& self, const nb::handle& angles) {
             const auto motor_angle_rad = to_vector<double>(angles, "motor_angle_rad");
             const std::size_t size = motor_angle_rad.shape(0);
-            NewVector<double> out(size);
+            FilledVector<double> out(size);
             double* const signal = out.data();
             const double* const angle_rad = motor_angle_rad.data();
             for (std::size_t k = 0; k < size; ++k) {

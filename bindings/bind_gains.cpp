@@ -42,7 +42,7 @@ void bind_gains(nb::module_& m) {
           [](const GainsD& self, const nb::handle& values) {
             const auto signals = to_matrix<double>(values, "signals");
             require_same_length("signals' second axis", signals.shape(1), "the gains", self.count);
-            NewVector<double> out(signals.shape(0));
+            FilledVector<double> out(signals.shape(0));
             for (std::size_t k = 0; k < signals.shape(0); ++k) {
               out.data()[k] = weighted_sum(self, signals.data() + k * self.count);
             }

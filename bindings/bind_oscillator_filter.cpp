@@ -2,12 +2,14 @@
 #include "bind_oscillator_filter.hpp"
 
 #include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/variant.h>
 #include <nanobind/stl/vector.h>
 
 #include <optional>
 #include <tuple>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -74,18 +76,19 @@ class Filter {
                       instance_);
   }
   void reset() {
-    const auto held = calls_.hold();
+    calls_.wait();
     instance_ = make();
   }
   [[nodiscard]] Filter copy() const {
-    const auto held = calls_.hold();
+    calls_.wait();
     return *this;
   }
 
   template <class Real>
   Results<Real> process(const Vector<Real>& torque_Nm, const Optional<Vector<Real>>& speed_rad_s,
                         const Optional<Vector<double>>& angle_rad,
-                        const Optional<Vector<Real>>& expected_Nm) {
+                        const Optional<Vector<Real>>& expected_Nm,
+                        const Given<Real, Real, std::uint32_t>& out) {
     require_precision<Real>(single_precision_);
     const std::size_t size = torque_Nm.shape(0);
     RotationArrays<Real> rotation;
@@ -101,12 +104,11 @@ class Filter {
     if (expected_Nm) {
       require_same_length("expected_torque_Nm", expected_Nm->shape(0), "torque_Nm", size);
     }
-    NewVector<Real> clean(size);
-    NewVector<Real> ripple(size);
-    NewVector<std::uint32_t> status(size);
+    auto clean = result_array<0>(out, size);
+    auto ripple = result_array<1>(out, size);
+    auto status = result_array<2>(out, size);
     {
-      const nb::gil_scoped_release release;
-      const auto held = calls_.hold();
+      const CallLock::Long running(calls_);
       std::visit(
           [&](auto& instance) {
             using InstanceReal = std::remove_reference_t<decltype(instance)>::Real;
@@ -120,11 +122,38 @@ class Filter {
     return {clean.give(), ripple.give(), status.give()};
   }
 
+  /// One sample; its motion is a speed or an angle, whichever the configuration turns by.
+  double step(double torque_Nm, double motion) {
+    calls_.wait();
+    return std::visit(
+        [&](auto& instance) {
+          using Real = std::remove_reference_t<decltype(instance)>::Real;
+          const auto torque = static_cast<Real>(torque_Nm);
+          const auto speed_rad_s = static_cast<Real>(motion);
+          RotationArrays<Real> rotation;
+          if (config_.rotation_source == RotationSource::speed) {
+            rotation.speed_rad_s = &speed_rad_s;
+          } else {
+            rotation.angle_rad = &motion;
+          }
+          Real clean_Nm{};
+          Real ripple_Nm{};
+          instance.process(1, &torque, nullptr, rotation, &clean_Nm, &ripple_Nm,
+                           &last_step_status_);
+          last_step_ripple_Nm_ = static_cast<double>(ripple_Nm);
+          return static_cast<double>(clean_Nm);
+        },
+        instance_);
+  }
+  [[nodiscard]] std::pair<double, std::uint32_t> last_step() const {
+    return {last_step_ripple_Nm_, last_step_status_};
+  }
+
   [[nodiscard]] std::tuple<VectorOut<double>, MatrixOut<double>> predicted_state() const {
     const std::size_t count = 2 * config_.order_count;
-    NewVector<double> states(count);
+    FilledVector<double> states(count);
     auto* const covariance = new double[count * count];
-    const auto held = calls_.hold();
+    calls_.wait();
     std::visit(
         [&](const auto& instance) {
           const auto now = predicted(instance.config, instance.state);
@@ -141,9 +170,9 @@ class Filter {
   }
 
   [[nodiscard]] CountsByName counters() const {
-    const auto held = calls_.hold();
-    return std::visit([](const auto& instance) { return counts_by_name(instance.state.counters); },
-                      instance_);
+    calls_.wait();
+    return counts_by_name(
+        std::visit([](const auto& instance) { return instance.state.counters; }, instance_));
   }
 
  private:
@@ -171,6 +200,8 @@ class Filter {
   std::size_t least_capacity_;
   CallLock calls_;
   AnyInstance instance_;
+  double last_step_ripple_Nm_ = 0.0;
+  std::uint32_t last_step_status_ = 0;
 };
 
 OscillatorConfigD make_config(const nb::sequence& orders,
@@ -302,13 +333,17 @@ void bind_oscillator_filter(nb::module_& m) {
       .def("process_float64", &Filter::process<double>, "torque_Nm"_a.noconvert(),
            "motor_speed_rad_s"_a.noconvert() = nb::none(),
            "motor_angle_rad"_a.noconvert() = nb::none(),
-           "expected_torque_Nm"_a.noconvert() = nb::none(),
+           "expected_torque_Nm"_a.noconvert() = nb::none(), "out"_a.noconvert() = nb::none(),
            "Clean torque, ripple and status of contiguous float64 arrays, without copies.")
       .def("process_float32", &Filter::process<float>, "torque_Nm"_a.noconvert(),
            "motor_speed_rad_s"_a.noconvert() = nb::none(),
            "motor_angle_rad"_a.noconvert() = nb::none(),
-           "expected_torque_Nm"_a.noconvert() = nb::none(),
+           "expected_torque_Nm"_a.noconvert() = nb::none(), "out"_a.noconvert() = nb::none(),
            "The same of contiguous float32 arrays; angles stay float64.")
+      .def("step", &Filter::step, "torque_Nm"_a, "motion"_a,
+           "Clean torque of one sample, Nm; motion is rad/s or rad, whichever the configuration "
+           "turns by.")
+      .def_prop_ro("last_step", &Filter::last_step, "Ripple, Nm, and status of the last step.")
       .def("predicted_state", &Filter::predicted_state,
            "x(k+1), Nm, and P(k+1), Nm^2, after the last sample k.")
       .def_prop_ro("counters", &Filter::counters, "How often each status flag was raised.");

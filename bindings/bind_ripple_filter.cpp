@@ -2,11 +2,13 @@
 #include "bind_ripple_filter.hpp"
 
 #include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/variant.h>
 
 #include <optional>
 #include <tuple>
+#include <utility>
 #include <variant>
 
 #include "bind_status.hpp"
@@ -112,18 +114,19 @@ class OwnedFilter {  // not Filter: nanobind tells types apart by name, also in 
                       instance_);
   }
   void reset() {
-    const auto held = calls_.hold();
+    calls_.wait();
     instance_ = make();
   }
   [[nodiscard]] OwnedFilter copy() const {
-    const auto held = calls_.hold();
+    calls_.wait();
     return *this;
   }
 
   template <class Real>
   Results<Real> process(const Vector<double>& time_s, const Vector<double>& angle_rad,
                         const Vector<Real>& torque_Nm,
-                        const std::optional<Vector<Real>>& expected_Nm, bool angle_referenced) {
+                        const std::optional<Vector<Real>>& expected_Nm, bool angle_referenced,
+                        const Given<Real, Real, Real, Real, Real, Real, std::uint32_t>& out) {
     require_precision<Real>(single_precision_);
     const std::size_t size = torque_Nm.shape(0);
     require_same_length("time_s", time_s.shape(0), "torque_Nm", size);
@@ -137,16 +140,19 @@ class OwnedFilter {  // not Filter: nanobind tells types apart by name, also in 
                                         torque_Nm.data(),
                                         expected_Nm ? expected_Nm->data() : nullptr,
                                         angle_referenced};
-    NewVector<Real> reals[6] = {NewVector<Real>(size), NewVector<Real>(size),
-                                NewVector<Real>(size), NewVector<Real>(size),
-                                NewVector<Real>(size), NewVector<Real>(size)};
-    NewVector<std::uint32_t> status(size);
-    const RippleResults<Real> results = {reals[0].data(), reals[1].data(), reals[2].data(),
-                                         reals[3].data(), reals[4].data(), reals[5].data(),
+    auto clean = result_array<0>(out, size);
+    auto ripple = result_array<1>(out, size);
+    auto all_removed = result_array<2>(out, size);
+    auto state = result_array<3>(out, size);
+    auto innovation = result_array<4>(out, size);
+    auto innovation_variance = result_array<5>(out, size);
+    auto status = result_array<6>(out, size);
+    const RippleResults<Real> results = {clean.data(),       ripple.data(),
+                                         all_removed.data(), state.data(),
+                                         innovation.data(),  innovation_variance.data(),
                                          status.data()};
     {
-      const nb::gil_scoped_release release;
-      const auto held = calls_.hold();
+      const CallLock::Long running(calls_);
       std::visit(
           [&](auto& instance) {
             using InstanceReal = std::remove_reference_t<decltype(instance)>::Real;
@@ -156,12 +162,33 @@ class OwnedFilter {  // not Filter: nanobind tells types apart by name, also in 
           },
           instance_);
     }
-    return {reals[0].give(), reals[1].give(), reals[2].give(), reals[3].give(),
-            reals[4].give(), reals[5].give(), status.give()};
+    return {clean.give(), ripple.give(),     all_removed.give(),
+            state.give(), innovation.give(), innovation_variance.give(),
+            status.give()};
+  }
+
+  /// One sample.
+  double step(double time_s, double angle_rad, double torque_Nm) {
+    calls_.wait();
+    return std::visit(
+        [&](auto& instance) {
+          using Real = std::remove_reference_t<decltype(instance)>::Real;
+          const auto torque = static_cast<Real>(torque_Nm);
+          Real reals[6] = {};
+          instance.process(
+              {1, &time_s, &angle_rad, &torque, nullptr, true},
+              {reals, reals + 1, reals + 2, reals + 3, reals + 4, reals + 5, &last_step_status_});
+          last_step_ripple_Nm_ = static_cast<double>(reals[1]);
+          return static_cast<double>(reals[0]);
+        },
+        instance_);
+  }
+  [[nodiscard]] std::pair<double, std::uint32_t> last_step() const {
+    return {last_step_ripple_Nm_, last_step_status_};
   }
 
   [[nodiscard]] LearnedD learned_now() const {
-    const auto held = calls_.hold();
+    calls_.wait();
     return std::visit(
         [&](const auto& instance) {
           return converted<double, most_pairs>(learned(instance.config, instance.state));
@@ -171,9 +198,9 @@ class OwnedFilter {  // not Filter: nanobind tells types apart by name, also in 
 
   /// Amplitude and phase of each order now.
   [[nodiscard]] std::tuple<VectorOut<double>, VectorOut<double>> order_ripple_now() const {
-    NewVector<double> amplitude_Nm(config_.order_count);
-    NewVector<double> phase_rad(config_.order_count);
-    const auto held = calls_.hold();
+    FilledVector<double> amplitude_Nm(config_.order_count);
+    FilledVector<double> phase_rad(config_.order_count);
+    calls_.wait();
     std::visit(
         [&](const auto& instance) {
           for (std::size_t a = 0; a < config_.order_count; ++a) {
@@ -188,10 +215,10 @@ class OwnedFilter {  // not Filter: nanobind tells types apart by name, also in 
 
   [[nodiscard]] std::tuple<VectorOut<double>, MatrixOut<double>> state_now() const {
     const std::size_t count = 1 + 2 * pair_count(config_);
-    NewVector<double> states(count);
+    FilledVector<double> states(count);
     auto* const covariance = new double[count * count];
     const nb::capsule owner(covariance, [](void* p) noexcept { delete[] static_cast<double*>(p); });
-    const auto held = calls_.hold();
+    calls_.wait();
     std::visit(
         [&](const auto& instance) {
           for (std::size_t i = 0; i < count; ++i) {
@@ -207,9 +234,9 @@ class OwnedFilter {  // not Filter: nanobind tells types apart by name, also in 
   }
 
   [[nodiscard]] CountsByName counters() const {
-    const auto held = calls_.hold();
-    return std::visit([](const auto& instance) { return counts_by_name(instance.state.counters); },
-                      instance_);
+    calls_.wait();
+    return counts_by_name(
+        std::visit([](const auto& instance) { return instance.state.counters; }, instance_));
   }
 
  private:
@@ -238,6 +265,8 @@ class OwnedFilter {  // not Filter: nanobind tells types apart by name, also in 
   std::optional<LearnedD> kept_;
   CallLock calls_;
   AnyInstance instance_;
+  double last_step_ripple_Nm_ = 0.0;
+  std::uint32_t last_step_status_ = 0;
 };
 
 }  // namespace
@@ -263,12 +292,17 @@ void bind_ripple_filter(nb::module_& m) {
       .def("process_float64", &OwnedFilter::process<double>, "time_s"_a.noconvert(),
            "motor_angle_rad"_a.noconvert(), "torque_Nm"_a.noconvert(),
            "expected_torque_Nm"_a.noconvert() = nb::none(), "angle_referenced"_a = true,
+           "out"_a.noconvert() = nb::none(),
            "Torque, ripple, torque without any ripple, T, innovation, its variance and status of "
            "contiguous float64 arrays, without copies.")
       .def("process_float32", &OwnedFilter::process<float>, "time_s"_a.noconvert(),
            "motor_angle_rad"_a.noconvert(), "torque_Nm"_a.noconvert(),
            "expected_torque_Nm"_a.noconvert() = nb::none(), "angle_referenced"_a = true,
+           "out"_a.noconvert() = nb::none(),
            "The same of contiguous float32 arrays; times and angles stay float64.")
+      .def("step", &OwnedFilter::step, "time_s"_a, "motor_angle_rad"_a, "torque_Nm"_a,
+           "Clean torque of one sample, Nm.")
+      .def_prop_ro("last_step", &OwnedFilter::last_step, "Ripple, Nm, and status of the last step.")
       .def_prop_ro("counters", &OwnedFilter::counters, "How often each status flag was raised.");
 }
 

@@ -96,12 +96,11 @@ class OwnedSmoother {
       raise_input_error("finished_rows = " + std::to_string(finished) + ": expected at most the " +
                         std::to_string(rows.size) + " rows given; give more rows");
     }
-    NewVector<double> clean(finished);
-    NewVector<double> ripple(finished);
-    NewVector<std::uint32_t> status(finished);
+    FilledVector<double> clean(finished);
+    FilledVector<double> ripple(finished);
+    FilledVector<std::uint32_t> status(finished);
     {
-      const nb::gil_scoped_release release;
-      const auto held = calls_.hold();
+      const CallLock::Long running(calls_);
       std::visit(
           [&](auto& instance) {
             instance.process(rows, finished, clean.data(), ripple.data(), status.data());

@@ -69,14 +69,21 @@ struct SensorArrays {
 };
 
 template <class Real>
+using GivenToSensor = Given<Real, Real, Real, std::uint32_t, std::uint8_t>;
+
+template <class Real>
 struct SensorOutputs {
-  NewVector<Real> measured_Nm;
-  NewVector<Real> clean_Nm;
-  NewVector<Real> ripple_Nm;
-  NewVector<std::uint32_t> status;
-  NewVector<std::uint8_t> left_out_gauge;
-  explicit SensorOutputs(std::size_t size)
-      : measured_Nm(size), clean_Nm(size), ripple_Nm(size), status(size), left_out_gauge(size) {}
+  FilledVector<Real> measured_Nm;
+  FilledVector<Real> clean_Nm;
+  FilledVector<Real> ripple_Nm;
+  FilledVector<std::uint32_t> status;
+  FilledVector<std::uint8_t> left_out_gauge;
+  SensorOutputs(const GivenToSensor<Real>& given, std::size_t size)
+      : measured_Nm(result_array<0>(given, size)),
+        clean_Nm(result_array<1>(given, size)),
+        ripple_Nm(result_array<2>(given, size)),
+        status(result_array<3>(given, size)),
+        left_out_gauge(result_array<4>(given, size)) {}
 };
 
 /// The chain's interval of a time stamp: 0 where only the next one will tell, and what the chain
@@ -210,11 +217,11 @@ class OwnedSensor {  // nanobind tells types apart by name, also in unnamed name
   [[nodiscard]] const SensorSettings& config() const { return settings_; }
   [[nodiscard]] bool single_precision() const { return single_precision_; }
   void reset() {
-    const auto held = calls_.hold();
+    calls_.wait();
     instance_ = make();
   }
   [[nodiscard]] OwnedSensor copy() const {
-    const auto held = calls_.hold();
+    calls_.wait();
     return *this;
   }
 
@@ -225,7 +232,8 @@ class OwnedSensor {  // nanobind tells types apart by name, also in unnamed name
                               const std::optional<Vector<Real>>& expected_Nm,
                               const std::optional<Vector<Real>>& temperature_degC,
                               const std::optional<Vector<std::uint32_t>>& sequence,
-                              const std::optional<Vector<double>>& time_s, bool angle_referenced) {
+                              const std::optional<Vector<double>>& time_s, bool angle_referenced,
+                              const GivenToSensor<Real>& given) {
     require_precision<Real>(single_precision_);
     SensorArrays<Real> in;
     in.size = codes.shape(0);
@@ -252,10 +260,9 @@ class OwnedSensor {  // nanobind tells types apart by name, also in unnamed name
           "motor_angle_rad is missing: expected it for the ripple filter, which learns by angle; "
           "give the array");
     }
-    SensorOutputs<Real> out(in.size);
+    SensorOutputs<Real> out(given, in.size);
     {
-      const nb::gil_scoped_release release;
-      const auto held = calls_.hold();
+      const CallLock::Long running(calls_);
       std::visit(
           [&](auto& instance) {
             using InstanceReal = std::remove_reference_t<decltype(instance)>::Real;
@@ -276,7 +283,7 @@ class OwnedSensor {  // nanobind tells types apart by name, also in unnamed name
           "the oscillator filter learns nothing that can be kept: expected a sensor with the "
           "ripple filter; configure it with a RippleFilterConfig");
     }
-    const auto held = calls_.hold();
+    calls_.wait();
     return std::visit(
         [&](const auto& instance) {
           if constexpr (std::remove_reference_t<decltype(instance)>::by_time) {
@@ -291,7 +298,7 @@ class OwnedSensor {  // nanobind tells types apart by name, also in unnamed name
 
   /// Number and fault of the lost gauge; 0 and none where none is.
   [[nodiscard]] std::pair<unsigned, GaugeFault> lost_gauge() const {
-    const auto held = calls_.hold();
+    calls_.wait();
     return std::visit(
         [](const auto& instance) {
           return std::pair{unsigned{instance.state.monitor.lost_gauge},
@@ -300,11 +307,11 @@ class OwnedSensor {  // nanobind tells types apart by name, also in unnamed name
         instance_);
   }
   void forget_lost_gauge() {
-    const auto held = calls_.hold();
+    calls_.wait();
     std::visit([](auto& instance) { clear_lost_gauge(instance.state.monitor); }, instance_);
   }
   [[nodiscard]] double residual_fluctuation_Nm() const {
-    const auto held = calls_.hold();
+    calls_.wait();
     return std::visit(
         [](const auto& instance) {
           return static_cast<double>(instance.state.last_reading.residual_fluctuation_Nm);
@@ -313,9 +320,9 @@ class OwnedSensor {  // nanobind tells types apart by name, also in unnamed name
   }
 
   [[nodiscard]] CountsByName counters() const {
-    const auto held = calls_.hold();
-    return std::visit([](const auto& instance) { return counts_by_name(instance.state.counters); },
-                      instance_);
+    calls_.wait();
+    return counts_by_name(
+        std::visit([](const auto& instance) { return instance.state.counters; }, instance_));
   }
 
  private:
@@ -422,7 +429,8 @@ void bind_torque_sensor(nb::module_& m) {
                "motor_angle_rad"_a.noconvert() = nb::none(),
                "expected_torque_Nm"_a.noconvert() = nb::none(),
                "temperature_degC"_a.noconvert() = nb::none(), "sequence"_a.noconvert() = nb::none(),
-               "time_s"_a.noconvert() = nb::none(), "angle_referenced"_a = true, words);
+               "time_s"_a.noconvert() = nb::none(), "angle_referenced"_a = true,
+               "out"_a.noconvert() = nb::none(), words);
   };
   bind_process(
       "process_float64", &OwnedSensor::process<double>,

@@ -42,12 +42,11 @@ class Notch {
   Results process(const Vector<double>& torque_Nm, const Vector<double>& angle_rad) {
     const std::size_t size = torque_Nm.shape(0);
     require_same_length("motor_angle_rad", angle_rad.shape(0), "torque_Nm", size);
-    NewVector<double> clean(size);
-    NewVector<double> ripple(size);
-    NewVector<std::uint32_t> status(size);
+    FilledVector<double> clean(size);
+    FilledVector<double> ripple(size);
+    FilledVector<std::uint32_t> status(size);
     {
-      const nb::gil_scoped_release release;
-      const auto held = calls_.hold();
+      const CallLock::Long running(calls_);
       TrackingNotchSample<double> sample;
       for (std::size_t k = 0; k < size; ++k) {
         sample.measured_torque_Nm = torque_Nm.data()[k];

@@ -11,7 +11,9 @@
 #include <initializer_list>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
+#include <tuple>
 
 #include "strainwave/status.hpp"
 #include "strainwave/units.hpp"
@@ -34,24 +36,68 @@ using VectorOut = nb::ndarray<nb::numpy, Number, nb::ndim<1>>;
 template <class Number>
 using MatrixOut = nb::ndarray<nb::numpy, Number, nb::ndim<2>>;
 
-/// A new array that is filled here and then belongs to Python.
 template <class Number>
-class NewVector {
+using VectorInOut = nb::ndarray<nb::numpy, Number, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
+
+/// Raises strainwave.errors.InputError.
+[[noreturn]] inline void raise_input_error(const std::string& message) {
+  const nb::object type = nb::module_::import_("strainwave.errors").attr("InputError");
+  PyErr_SetString(type.ptr(), message.c_str());
+  throw nb::python_error();
+}
+
+inline void require_same_length(const char* name, std::size_t length, const char* other,
+                                std::size_t expected) {
+  if (length != expected) {
+    raise_input_error(std::string(name) + " has " + std::to_string(length) +
+                      " elements: expected " + std::to_string(expected) + " as in " + other +
+                      "; give arrays of one length");
+  }
+}
+
+/// A new array that then belongs to Python, or the caller's own; filled here in every element.
+template <class Number>
+class FilledVector {
  public:
-  explicit NewVector(std::size_t size) : data_(new Number[size]()), size_(size) {}
-  [[nodiscard]] Number* data() { return data_.get(); }
+  explicit FilledVector(std::size_t size)
+      : owned_(std::make_unique_for_overwrite<Number[]>(size)), data_(owned_.get()), size_(size) {}
+  explicit FilledVector(const VectorInOut<Number>& given)
+      : given_(given), data_(given_.data()), size_(given_.shape(0)) {}
+  [[nodiscard]] Number* data() { return data_; }
   [[nodiscard]] VectorOut<Number> give() {
-    Number* const data = data_.release();
+    if (owned_ == nullptr) {
+      return VectorOut<Number>(given_);
+    }
+    Number* const data = owned_.release();
     const nb::capsule owner(data, [](void* p) noexcept { delete[] static_cast<Number*>(p); });
     return VectorOut<Number>(data, {size_}, owner);
   }
 
  private:
-  std::unique_ptr<Number[]> data_;
+  std::unique_ptr<Number[]> owned_;
+  VectorInOut<Number> given_;
+  Number* data_;
   std::size_t size_;
 };
 
-/// One call at a time: calls release the interpreter, and a filter's state belongs to one of them.
+/// Arrays of the caller's in which results are wanted; without them new ones are made.
+template <class... Numbers>
+using Given = std::optional<std::tuple<VectorInOut<Numbers>...>>;
+
+/// Result number Index of a call: in the caller's array where there is one.
+template <std::size_t Index, class... Numbers>
+auto result_array(const Given<Numbers...>& given, std::size_t size) {
+  using Number = std::tuple_element_t<Index, std::tuple<Numbers...>>;
+  if (!given) {
+    return FilledVector<Number>(size);
+  }
+  require_same_length("an array of out", std::get<Index>(*given).shape(0), "the samples", size);
+  return FilledVector<Number>(std::get<Index>(*given));
+}
+
+/// One call at a time: a long call lends the interpreter to other threads, and the object's state
+/// belongs to it until it ends.  Short calls keep the interpreter, so that none can begin meanwhile
+/// and waiting for the long ones costs them one comparison.
 class CallLock {
  public:
   CallLock() = default;
@@ -60,18 +106,45 @@ class CallLock {
   CallLock& operator=(const CallLock&) = delete;
   CallLock(CallLock&&) = delete;
   CallLock& operator=(CallLock&&) = delete;
-  [[nodiscard]] std::unique_lock<std::mutex> hold() const { return std::unique_lock(mutex_); }
+
+  /// Waits for the end of a long call; the caller has the interpreter.
+  void wait() const {
+    while (running_) {
+      const nb::gil_scoped_release release;
+      const std::lock_guard until_end(mutex_);
+    }
+  }
+
+  /// A long call, from which on the caller has the object and not the interpreter.
+  class Long {
+   public:
+    explicit Long(const CallLock& lock) : held_(lock) {}
+
+   private:
+    struct Held {
+      explicit Held(const CallLock& of) : lock(of) {
+        lock.wait();
+        lock.running_ = true;
+        lock.mutex_.lock();
+      }
+      ~Held() {
+        lock.running_ = false;
+        lock.mutex_.unlock();
+      }
+      Held(const Held&) = delete;
+      Held& operator=(const Held&) = delete;
+      Held(Held&&) = delete;
+      Held& operator=(Held&&) = delete;
+      const CallLock& lock;
+    };
+    Held held_;  // given back after the interpreter is there again
+    nb::gil_scoped_release release_;
+  };
 
  private:
-  mutable std::mutex mutex_;
+  mutable bool running_ = false;  ///< changed by who has the interpreter
+  mutable std::mutex mutex_;      ///< held by a long call, for others to wait on
 };
-
-/// Raises strainwave.errors.InputError.
-[[noreturn]] inline void raise_input_error(const std::string& message) {
-  const nb::object type = nb::module_::import_("strainwave.errors").attr("InputError");
-  PyErr_SetString(type.ptr(), message.c_str());
-  throw nb::python_error();
-}
 
 /// Raises strainwave.errors.ConfigurationError where a check found something.
 template <class Real>
@@ -88,15 +161,6 @@ void require(const Violation<Real>& violation) {
       type(parameter, static_cast<double>(violation.value), violation.unit, violation.expected);
   PyErr_SetObject(type.ptr(), error.ptr());
   throw nb::python_error();
-}
-
-inline void require_same_length(const char* name, std::size_t length, const char* other,
-                                std::size_t expected) {
-  if (length != expected) {
-    raise_input_error(std::string(name) + " has " + std::to_string(length) +
-                      " elements: expected " + std::to_string(expected) + " as in " + other +
-                      "; give arrays of one length");
-  }
 }
 
 /// Refuses arrays of the precision that the object was not built for.
@@ -266,5 +330,6 @@ void bind_ripple_filter(nb::module_& m);
 void bind_ripple_smoother(nb::module_& m);
 void bind_torque_sensor(nb::module_& m);
 void bind_tracking_notch(nb::module_& m);
+void bind_empty_step(nb::module_& m);
 
 }  // namespace strainwave::bindings

@@ -20,4 +20,5 @@ NB_MODULE(_core, m) {
   bind_ripple_smoother(m);
   bind_torque_sensor(m);
   bind_tracking_notch(m);
+  bind_empty_step(m);
 }

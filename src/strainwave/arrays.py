@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import fields
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
@@ -9,6 +10,9 @@ import numpy as np
 from strainwave.errors import InputError
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from _typeshed import DataclassInstance
     from numpy.typing import ArrayLike, DTypeLike, NDArray
 
 Number = TypeVar("Number", bound=np.generic)
@@ -86,6 +90,59 @@ def optional_contiguous(
         The values.
     """
     return None if values is None else contiguous(name, values, dtype)
+
+
+def arrays_of(
+    out: DataclassInstance | None,
+    rows: int,
+    dtype: type[np.generic],
+    inputs: Iterable[NDArray[Any] | None],
+) -> tuple[NDArray[Any], ...] | None:
+    """Arrays of an earlier result, to be filled again.
+
+    Parameters
+    ----------
+    out : dataclass or None
+        A result whose fields are arrays; None where new ones are wanted.
+    rows : int
+        How many elements each must have.
+    dtype : type
+        Precision of its numbers; what holds whole numbers keeps its own type.
+    inputs : iterable of numpy.ndarray or None
+        What the results are computed from.
+
+    Returns
+    -------
+    tuple of numpy.ndarray or None
+        Its arrays, in the order of the fields.
+
+    Raises
+    ------
+    InputError
+        If an array cannot take the results as they are, or shares memory with another one.
+    """
+    if out is None:
+        return None
+    wanted = {"status": np.dtype(np.uint32), "left_out_gauge": np.dtype(np.uint8)}
+    found: list[NDArray[Any]] = []
+    others = [array for array in inputs if array is not None]
+    for field in fields(out):
+        name, array = f"out.{field.name}", getattr(out, field.name)
+        kind = wanted.get(field.name, np.dtype(dtype))
+        fits = isinstance(array, np.ndarray) and (array.shape, array.dtype) == ((rows,), kind)
+        if not (fits and array.flags.c_contiguous and array.flags.writeable):
+            raise InputError(
+                f"{name} cannot take the results: expected a contiguous, writable array of {kind} "
+                f"with the shape ({rows},); give the result of a call with as many samples"
+            )
+        # By the ends of their memory, which is quick: views that only interleave are refused, too.
+        if any(np.may_share_memory(array, other) for other in (*others, *found)):
+            raise InputError(
+                f"{name} shares memory with another array of the call: expected memory of its own; "
+                "give a copy"
+            )
+        found.append(array)
+    return tuple(found)
 
 
 def precision(dtype: DTypeLike) -> type[np.float64] | type[np.float32]:

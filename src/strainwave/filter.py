@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from strainwave import _core
-from strainwave.arrays import contiguous, optional_contiguous, precision
+from strainwave.arrays import arrays_of, contiguous, optional_contiguous, precision
 from strainwave.errors import InputError
 
 if TYPE_CHECKING:
@@ -83,6 +83,13 @@ class OscillatorFilter:
         float64, or float32 as on a microcontroller.
     least_capacity : int
         Orders the compiled filter must at least have room for. The result does not depend on it.
+
+    Attributes
+    ----------
+    step : callable
+        ``step(torque_Nm, motion)`` takes one sample and returns its torque without ripple, Nm;
+        ``motion`` is the motor's speed, rad/s, or its angle, rad, whichever the configuration turns
+        by. It is the core's own method, without anything of Python's around it.
     """
 
     def __init__(
@@ -103,6 +110,7 @@ class OscillatorFilter:
             single_precision=self._dtype is np.float32,
             least_capacity=least_capacity,
         )
+        self.step = self._filter.step
 
     @property
     def config(self) -> _core.OscillatorFilterConfig:
@@ -119,6 +127,11 @@ class OscillatorFilter:
         """How many samples there were, and how often each status flag was raised."""
         return dict(self._filter.counters)
 
+    @property
+    def last_step(self) -> tuple[float, int]:
+        """Ripple, Nm, and bits of `strainwave.StatusFlag` of the last `step`."""
+        return self._filter.last_step
+
     def process(
         self,
         torque_Nm: ArrayLike,
@@ -126,11 +139,13 @@ class OscillatorFilter:
         motor_speed_rad_s: ArrayLike | None = None,
         motor_angle_rad: ArrayLike | None = None,
         expected_torque_Nm: ArrayLike | None = None,
+        out: FilterResult | None = None,
     ) -> FilterResult:
         """Remove the ripple from samples; the state goes on to the next call.
 
         Chunks of a recording give the same as one call to the last bit. Contiguous arrays of the
-        filter's precision (angles: float64) are read where they are.
+        filter's precision (angles: float64) are read where they are, read-only ones too; others are
+        copied once. Other threads of Python go on meanwhile.
 
         Parameters
         ----------
@@ -142,11 +157,13 @@ class OscillatorFilter:
             Motor angle, rad, not wrapped; needed where the configuration turns by angle.
         expected_torque_Nm : array_like, optional
             T_exp of section V, for example load inertia times acceleration; 0 without.
+        out : FilterResult, optional
+            An earlier result for as many samples, whose arrays are written over; new ones without.
 
         Returns
         -------
         FilterResult
-            Torque, ripple and status of every sample.
+            Torque, ripple and status of every sample; `out` where it is given.
 
         Raises
         ------
@@ -162,7 +179,9 @@ class OscillatorFilter:
             if self._dtype is np.float32
             else self._filter.process_float64
         )
-        return FilterResult(*run(torque, speed, angle, expected))
+        arrays = arrays_of(out, len(torque), self._dtype, (torque, speed, angle, expected))
+        results = run(torque, speed, angle, expected, arrays)
+        return FilterResult(*results) if out is None else out
 
     def predicted_state(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """State and covariance predicted for the next sample.
@@ -192,6 +211,7 @@ class OscillatorFilter:
         twin = object.__new__(type(self))
         twin.__dict__.update(self.__dict__)
         twin._filter = self._filter.copy()
+        twin.step = twin._filter.step
         return twin
 
     def __copy__(self) -> OscillatorFilter:

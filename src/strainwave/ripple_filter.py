@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from strainwave import _core
-from strainwave.arrays import contiguous, optional_contiguous, precision
+from strainwave.arrays import arrays_of, contiguous, optional_contiguous, precision
 from strainwave.errors import InputError
 
 if TYPE_CHECKING:
@@ -62,6 +62,12 @@ class RippleFilter:
     least_capacity : int
         Pairs of coefficients the compiled filter must at least have room for. The result does not
         depend on it.
+
+    Attributes
+    ----------
+    step : callable
+        ``step(time_s, motor_angle_rad, torque_Nm)`` takes one sample and returns its torque without
+        ripple, Nm. It is the core's own method, without anything of Python's around it.
     """
 
     def __init__(
@@ -89,6 +95,7 @@ class RippleFilter:
             least_capacity=least_capacity,
             learned=learned,
         )
+        self.step = self._filter.step
 
     @property
     def config(self) -> _core.RippleFilterConfig:
@@ -105,6 +112,11 @@ class RippleFilter:
         """How many samples there were, and how often each status flag was raised."""
         return dict(self._filter.counters)
 
+    @property
+    def last_step(self) -> tuple[float, int]:
+        """Ripple, Nm, and bits of `strainwave.StatusFlag` of the last `step`."""
+        return self._filter.last_step
+
     def process(
         self,
         time_s: ArrayLike,
@@ -113,11 +125,13 @@ class RippleFilter:
         *,
         expected_torque_Nm: ArrayLike | None = None,
         angle_referenced: bool = True,
+        out: RippleResult | None = None,
     ) -> RippleResult:
         """Remove the ripple from samples; the state goes on to the next call.
 
         Chunks of a recording give the same as one call to the last bit. Contiguous arrays of the
-        filter's precision (times and angles: float64) are read where they are.
+        filter's precision (times and angles: float64) are read where they are, read-only ones too;
+        others are copied once. Other threads of Python go on meanwhile.
 
         Parameters
         ----------
@@ -132,11 +146,13 @@ class RippleFilter:
             Part of the true torque that is known, for example load inertia times acceleration.
         angle_referenced : bool
             False where the angle counts from an unknown zero: frozen terms then wait.
+        out : RippleResult, optional
+            An earlier result for as many samples, whose arrays are written over; new ones without.
 
         Returns
         -------
         RippleResult
-            Torque, ripple and status of every sample.
+            Torque, ripple and status of every sample; `out` where it is given.
 
         Raises
         ------
@@ -152,7 +168,9 @@ class RippleFilter:
             if self._dtype is np.float32
             else self._filter.process_float64
         )
-        return RippleResult(*run(time, angle, torque, expected, bool(angle_referenced)))
+        arrays = arrays_of(out, len(torque), self._dtype, (time, angle, torque, expected))
+        results = run(time, angle, torque, expected, bool(angle_referenced), arrays)
+        return RippleResult(*results) if out is None else out
 
     def learned(self) -> _core.LearnedRipple:
         """Coefficients as they are now, to keep over a power cycle.
@@ -206,6 +224,7 @@ class RippleFilter:
         twin = object.__new__(type(self))
         twin.__dict__.update(self.__dict__)
         twin._filter = self._filter.copy()
+        twin.step = twin._filter.step
         return twin
 
     def __copy__(self) -> RippleFilter:

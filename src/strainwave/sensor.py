@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from strainwave import _core
-from strainwave.arrays import contiguous, optional_contiguous, precision
+from strainwave.arrays import arrays_of, contiguous, optional_contiguous, precision
 from strainwave.errors import InputError
 
 if TYPE_CHECKING:
@@ -124,6 +124,7 @@ class TorqueSensor:
         sequence: ArrayLike | None = None,
         time_s: ArrayLike | None = None,
         angle_referenced: bool = True,
+        out: SensorResult | None = None,
     ) -> SensorResult:
         """Run samples through the chain; the state goes on to the next call.
 
@@ -151,11 +152,14 @@ class TorqueSensor:
         angle_referenced : bool
             False where the angle counts from an unknown zero: the ripple filter's frozen terms
             then wait.
+        out : SensorResult, optional
+            An earlier result for as many samples, whose arrays are written over; new ones without.
 
         Returns
         -------
         SensorResult
-            Torque before and after, ripple, status and left-out gauge of every sample.
+            Torque before and after, ripple, status and left-out gauge of every sample; `out` where
+            it is given.
 
         Raises
         ------
@@ -166,18 +170,18 @@ class TorqueSensor:
         run: Any = (
             self._sensor.process_float32 if dtype is np.float32 else self._sensor.process_float64
         )
-        return SensorResult(
-            *run(
-                contiguous("codes", codes, np.int32, dimensions=2),
-                optional_contiguous("motor_speed_rad_s", motor_speed_rad_s, dtype),
-                optional_contiguous("motor_angle_rad", motor_angle_rad, np.float64),
-                optional_contiguous("expected_torque_Nm", expected_torque_Nm, dtype),
-                optional_contiguous("temperature_degC", temperature_degC, dtype),
-                optional_contiguous("sequence", sequence, np.uint32),
-                optional_contiguous("time_s", time_s, np.float64),
-                bool(angle_referenced),
-            )
+        inputs = (
+            contiguous("codes", codes, np.int32, dimensions=2),
+            optional_contiguous("motor_speed_rad_s", motor_speed_rad_s, dtype),
+            optional_contiguous("motor_angle_rad", motor_angle_rad, np.float64),
+            optional_contiguous("expected_torque_Nm", expected_torque_Nm, dtype),
+            optional_contiguous("temperature_degC", temperature_degC, dtype),
+            optional_contiguous("sequence", sequence, np.uint32),
+            optional_contiguous("time_s", time_s, np.float64),
         )
+        arrays = arrays_of(out, len(inputs[0]), dtype, inputs)
+        results = run(*inputs, bool(angle_referenced), arrays)
+        return SensorResult(*results) if out is None else out
 
     def learned(self) -> _core.LearnedRipple:
         """Coefficients of the ripple filter as they are now, to keep over a power cycle.
