@@ -8,7 +8,7 @@ later; over a whole log every method gives exactly one row for each row it was g
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, Protocol, TypeVar
 
 import numpy as np
 
@@ -18,6 +18,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from strainwave.samples import Samples
+
+Number = TypeVar("Number", bound=np.generic)
 
 
 @dataclass(frozen=True)
@@ -94,11 +96,27 @@ def joined(parts: Iterable[Cleaned]) -> Cleaned:
     Returns
     -------
     Cleaned
+        All their rows; the only part that has any as it is.
+    """
+    listed = [part for part in parts if len(part)] or [nothing()]
+    return Cleaned(
+        together([part.torque_Nm for part in listed]),
+        together([part.ripple_Nm for part in listed]),
+        together([part.status for part in listed]),
+    )
+
+
+def together(arrays: list[NDArray[Number]]) -> NDArray[Number]:
+    """Put consecutive arrays together; a single one is handed back as it is.
+
+    Parameters
+    ----------
+    arrays : list of numpy.ndarray
+        One at least, each of shape (rows,).
+
+    Returns
+    -------
+    numpy.ndarray
         All their rows.
     """
-    listed = [*parts, nothing()]
-    return Cleaned(
-        np.concatenate([part.torque_Nm for part in listed]),
-        np.concatenate([part.ripple_Nm for part in listed]),
-        np.concatenate([part.status for part in listed]),
-    )
+    return arrays[0] if len(arrays) == 1 else np.concatenate(arrays)

@@ -40,6 +40,9 @@ class BackwardDifference:
             Motor speed, shape (rows,), rad/s. 0 at the first row with an angle; NaN where the angle
             or the time is not known, or where time does not advance.
         """
+        of_all = self._of_known_rows(time_s, angle_rad)
+        if of_all is not None:
+            return of_all
         time_s = np.concatenate([[self._time_s], time_s])
         angle_rad = np.concatenate([[self._angle_rad], angle_rad])
         known = np.isfinite(time_s) & np.isfinite(angle_rad)
@@ -57,4 +60,20 @@ class BackwardDifference:
         if last[-1] >= 0:
             self._time_s = time_s[last[-1]]
             self._angle_rad = angle_rad[last[-1]]
+        return speed_rad_s
+
+    def _of_known_rows(
+        self, time_s: NDArray[np.float64], angle_rad: NDArray[np.float64]
+    ) -> NDArray[np.float64] | None:
+        """Speeds where time goes on and all is known, the last row of before too; else None."""
+        if not len(time_s) or not np.isfinite(time_s[-1]):
+            return None
+        with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
+            interval_s = np.diff(time_s, prepend=self._time_s)
+            speed_rad_s = np.diff(angle_rad, prepend=self._angle_rad)
+            speed_rad_s /= interval_s
+        # What is not a number, or infinite, shows in a speed.
+        if not ((interval_s > 0.0).all() and np.isfinite(speed_rad_s).all()):
+            return None
+        self._time_s, self._angle_rad = time_s[-1], angle_rad[-1]
         return speed_rad_s

@@ -56,13 +56,16 @@ class Published:
         Cleaned
             One row for each.
         """
+        speed_rad_s = angle_rad = None
         if self._by_speed:
             speed_rad_s = self._motion.speeds(samples.time_s, samples.motor_angle_rad)
-            rotation = {"motor_speed_rad_s": speed_rad_s}
         else:
-            rotation = {"motor_angle_rad": samples.motor_angle_rad}
+            angle_rad = samples.motor_angle_rad
         result = self._filter.process(
-            samples.torque_Nm, expected_torque_Nm=samples.expected_torque_Nm, **rotation
+            samples.torque_Nm,
+            motor_speed_rad_s=speed_rad_s,
+            motor_angle_rad=angle_rad,
+            expected_torque_Nm=samples.expected_torque_Nm,
         )
         return Cleaned(result.torque_Nm, result.ripple_Nm, result.status)
 

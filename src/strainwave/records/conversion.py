@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 
 LARGEST_USABLE: Final = 1e15
 """A value beyond this counts as missing, as in the core."""
+_LARGEST_DIFFERENCE: Final = 2.0**62
 
 
 @dataclass(frozen=True)
@@ -136,7 +137,10 @@ class Converter:
             assert self._layout.chain is not None
             converted = sign * self._layout.chain.volts(values)
         else:
-            converted = values * (sign * unit.factor) + unit.offset
+            converted = values * (sign * unit.factor)
+            converted += unit.offset
+        if _within(converted, LARGEST_USABLE):
+            return converted
         # What the core would reject is not there: nothing that follows has to think of overflow.
         return np.where(np.abs(converted) <= LARGEST_USABLE, converted, np.nan)
 
@@ -148,14 +152,22 @@ class Converter:
         per_second = sign * float(round(1.0 / unit.factor))
         log_time_s = stamps.values / per_second
         # The second limit is that of differences of whole numbers.
+        largest = min(LARGEST_USABLE, 0.5 * _LARGEST_DIFFERENCE / abs(per_second))
+        if self._origin is not None and _within(log_time_s, largest) and not stamps.missing.any():
+            since = np.asarray(stamps.values - self._origin, dtype=np.float64)
+            return log_time_s, since / per_second
         usable = (np.abs(log_time_s) <= LARGEST_USABLE) & (
-            np.abs(log_time_s * per_second) < 2.0**62
+            np.abs(log_time_s * per_second) < _LARGEST_DIFFERENCE
         )
         usable &= ~stamps.missing
         if self._origin is None and usable.any():
             self._origin = stamps.values[int(np.argmax(usable))]
         origin = self._origin if self._origin is not None else np.int64(0)
         # What is missing is replaced first, so that no difference overflows.
-        since = np.where(usable, stamps.values, origin) - origin
-        time_s = np.where(usable, since / per_second, np.nan)
-        return np.where(usable, log_time_s, np.nan), time_s
+        known = np.where(usable, stamps.values, origin) - origin
+        return np.where(usable, log_time_s, np.nan), np.where(usable, known / per_second, np.nan)
+
+
+def _within(values: NDArray[np.float64], largest: float) -> bool:
+    """Whether all values lie within a limit; what is not a number does not."""
+    return len(values) == 0 or bool(values.max() <= largest and values.min() >= -largest)

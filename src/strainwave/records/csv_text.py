@@ -8,6 +8,8 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.compute as pc
 
+from strainwave.records.arrow_arrays import from_arrow, missing_in
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
@@ -54,7 +56,7 @@ def numbers(texts: pa.Array) -> NDArray[np.float64]:
         found = pc.cast(texts, pa.float64())
     except pa.ArrowInvalid:
         found = _patient(texts)
-    return np.asarray(found.to_numpy(zero_copy_only=False), dtype=np.float64)
+    return from_arrow(found, np.nan)
 
 
 def whole_numbers(texts: pa.Array) -> tuple[NDArray[np.int64], NDArray[np.bool_]] | None:
@@ -77,8 +79,7 @@ def whole_numbers(texts: pa.Array) -> tuple[NDArray[np.int64], NDArray[np.bool_]
             found = pc.cast(_trimmed(texts), pa.int64())
         except pa.ArrowInvalid:
             return None
-    missing = np.asarray(pc.is_null(found).to_numpy(zero_copy_only=False), dtype=np.bool_)
-    return pc.fill_null(found, 0).to_numpy(zero_copy_only=False), missing
+    return from_arrow(found, 0), missing_in(found)
 
 
 def _trimmed(texts: pa.Array) -> pa.Array:

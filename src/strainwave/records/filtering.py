@@ -7,7 +7,7 @@ from collections import deque
 from contextlib import nullcontext
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
@@ -15,6 +15,7 @@ from strainwave import _core
 from strainwave.errors import InputError
 from strainwave.fidelity.warning import fidelity_warnings
 from strainwave.joint import read_joint
+from strainwave.methods.interface import together
 from strainwave.methods.registry import METHOD_NAMES, Setting, build_method
 from strainwave.records.checks import check_method, check_output, check_survey
 from strainwave.records.columns import find_columns
@@ -23,6 +24,7 @@ from strainwave.records.findings import warnings_of
 from strainwave.records.gauge_watch import gauge_watch_of, joined_status
 from strainwave.records.gauge_words import gauge_sentences
 from strainwave.records.in_order import InOrder
+from strainwave.records.kept import KeptRecording
 from strainwave.records.layout import build_layout
 from strainwave.records.method_setting import (
     choose_wave_factor,
@@ -36,16 +38,21 @@ from strainwave.records.opening import open_recording
 from strainwave.records.options import Options
 from strainwave.records.passes import Progress, sample_rows, survey_recording, untold
 from strainwave.records.survey import estimated_rated_torque_Nm
+from strainwave.records.threads import done_behind
 from strainwave.records.writer import result_file
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable, Iterable, Iterator
 
     from numpy.typing import NDArray
 
     from strainwave.methods.interface import Cleaned, Method
     from strainwave.records.signals import Rows
     from strainwave.records.watching import Watch
+
+
+_FLAGS: Final = tuple(_core.StatusFlag)
+_FAULTS: Final = np.uint32(_core.FAULT_MASK)
 
 
 def filter_log(
@@ -61,7 +68,8 @@ def filter_log(
 ) -> FilteredLog:
     """Remove the ripple from a recording of any length.
 
-    The recording is read twice in chunks: once to see what it holds, and once to filter it.
+    The recording is passed over twice in chunks: once to see what it holds, and once to filter it.
+    Reading, filtering and writing go on at the same time.
 
     Parameters
     ----------
@@ -105,7 +113,7 @@ def filter_log(
         check_method(name, METHOD_NAMES)
         build = build_method
     layout = build_layout(options, joint)
-    recording = open_recording(path)
+    recording = KeptRecording(open_recording(path))
     found = find_columns(layout.columns, recording.names, recording.column_count, recording.source)
     survey = survey_recording(recording, layout, found, progress)
     check_survey(recording.source, layout, found, survey)
@@ -152,20 +160,20 @@ def _filter(
     waiting = _Waiting()
     with nullcontext() if log.out is None else result_file(log.out) as write:
 
-        def put(cleaned: Cleaned) -> None:
-            if len(cleaned):
-                time_s, measured_Nm, of_gauges = waiting.pop(len(cleaned))
-                cleaned = replace(cleaned, status=joined_status(cleaned.status, of_gauges))
-                tally.take(measured_Nm, cleaned)
-                if watch is not None:
-                    watch.take(time_s, measured_Nm, cleaned)
-                if write is not None:
-                    write(time_s, measured_Nm, cleaned)
+        def take(part: tuple[NDArray[np.float64], NDArray[np.float64], Cleaned]) -> None:
+            time_s, measured_Nm, cleaned = part
+            tally.take(measured_Nm, cleaned)
+            if watch is not None:
+                watch.take(time_s, measured_Nm, cleaned)
+            if write is not None:
+                write(time_s, measured_Nm, cleaned)
 
-        for rows in parts:
-            waiting.push(rows)
-            put(method.process(rows.samples))
-        put(method.finish())
+        with done_behind(take) as put:
+            for cleaned in _cleaned(method, parts, waiting):
+                if len(cleaned):
+                    time_s, measured_Nm, of_gauges = waiting.pop(len(cleaned))
+                    status = joined_status(cleaned.status, of_gauges)
+                    put((time_s, measured_Nm, replace(cleaned, status=status)))
         if tally.rows != log.survey.rows:
             raise InputError(
                 f"{log.path}: it had {log.survey.rows} rows at first and {tally.rows} later; "
@@ -179,6 +187,13 @@ def _filter(
         torque_after_rms_Nm=after_Nm,
         ripple_rms_Nm=ripple_Nm,
     )
+
+
+def _cleaned(method: Method, parts: Iterator[Rows], waiting: _Waiting) -> Iterator[Cleaned]:
+    for rows in parts:
+        waiting.push(rows)
+        yield method.process(rows.samples)
+    yield method.finish()
 
 
 class _Waiting:
@@ -202,9 +217,9 @@ class _Waiting:
                 self._parts.appendleft(rows.part(slice(count, None)))
             count -= min(count, len(rows))
         return (
-            np.concatenate([each.log_time_s for each in taken]),
-            np.concatenate([each.samples.torque_Nm for each in taken]),
-            np.concatenate([each.gauge_status for each in taken]),
+            together([each.log_time_s for each in taken]),
+            together([each.samples.torque_Nm for each in taken]),
+            together([each.gauge_status for each in taken]),
         )
 
 
@@ -213,23 +228,36 @@ class _Tally:
 
     def __init__(self) -> None:
         self.rows = 0
-        self.rows_by_flag = {str(flag.name): 0 for flag in _core.StatusFlag}
+        self.rows_by_flag = {str(flag.name): 0 for flag in _FLAGS}
         self._good = 0
         self._squares = np.zeros(3)
 
     def take(self, measured_Nm: NDArray[np.float64], cleaned: Cleaned) -> None:
         self.rows += len(cleaned)
-        for flag in _core.StatusFlag:
+        raised = np.bitwise_or.reduce(cleaned.status, initial=np.uint32(0))
+        for flag in _FLAGS:
             bits = np.uint32(flag.value)
-            self.rows_by_flag[str(flag.name)] += int(np.count_nonzero(cleaned.status & bits))
-        signals = np.stack([measured_Nm, cleaned.torque_Nm, cleaned.ripple_Nm])
-        good = (cleaned.status & np.uint32(_core.FAULT_MASK)) == 0
-        good &= np.isfinite(signals).all(axis=0)
-        self._good += int(np.count_nonzero(good))
-        self._squares += (signals[:, good] ** 2).sum(axis=1)
+            if raised & bits:
+                self.rows_by_flag[str(flag.name)] += int(np.count_nonzero(cleaned.status & bits))
+        signals = (measured_Nm, cleaned.torque_Nm, cleaned.ripple_Nm)
+        squares = _sums_of_squares(signals)
+        good = len(cleaned)
+        # The sums tell whether all is finite; only where it is not, rows are left out one by one.
+        if raised & _FAULTS or not np.isfinite(squares).all():
+            rows = (cleaned.status & _FAULTS) == 0
+            rows &= np.isfinite(signals).all(axis=0)
+            good = int(np.count_nonzero(rows))
+            squares = _sums_of_squares([signal[rows] for signal in signals])
+        self._good += good
+        self._squares += squares
 
     def rms_Nm(self) -> tuple[float | None, float | None, float | None]:
         if self._good == 0:
             return (None, None, None)
         before, after, ripple = (math.sqrt(squares / self._good) for squares in self._squares)
         return (before, after, ripple)
+
+
+def _sums_of_squares(signals: Iterable[NDArray[np.float64]]) -> NDArray[np.float64]:
+    # Added one after the other, as the core does.
+    return np.array([np.cumsum(signal**2)[-1] if len(signal) else 0.0 for signal in signals])

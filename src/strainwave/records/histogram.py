@@ -39,8 +39,12 @@ class LogHistogram:
             return
         bins = ((np.log10(values) - _LOWEST_DECADE) * _BINS_PER_DECADE).astype(np.int64)
         np.clip(bins, 0, len(self._counts) - 1, out=bins)
-        self._counts += np.bincount(bins, minlength=len(self._counts))
-        self._sums += np.bincount(bins, weights=values, minlength=len(self._counts))
+        # Most values lie in few bins, and the others need not be gone through.
+        first, last = int(bins.min()), int(bins.max())
+        bins -= first
+        found = slice(first, last + 1)
+        self._counts[found] += np.bincount(bins)
+        self._sums[found] += np.bincount(bins, weights=values)
         self.smallest = min(self.smallest, float(values.min()))
         self.largest = max(self.largest, float(values.max()))
 

@@ -53,6 +53,9 @@ class InOrder:
         Cleaned
             Rows that are ready, in order.
         """
+        if self._goes_on(samples.time_s):
+            self._flags.append(np.zeros(len(samples), np.uint32))
+            return self._ready([self._method.process(samples)])
         known = np.isfinite(samples.time_s)
         stamps = np.where(known, samples.time_s, -np.inf)
         latest = np.maximum.accumulate(np.append(self._latest_s, stamps))
@@ -78,6 +81,15 @@ class InOrder:
             The rest.
         """
         return self._ready([self._method.finish()])
+
+    def _goes_on(self, time_s: NDArray[np.float64]) -> bool:
+        """Whether each row is later than the one before; the last one is taken note of then."""
+        if not len(time_s) or not np.isfinite(time_s[-1]) or not time_s[0] > self._latest_s:
+            return False
+        if not (time_s[1:] > time_s[:-1]).all():
+            return False
+        self._latest_s = time_s[-1]
+        return True
 
     def _ready(self, new: list[Cleaned]) -> Cleaned:
         results = joined([self._results, *new])

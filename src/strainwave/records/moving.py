@@ -111,6 +111,9 @@ class MovingTally:
                 return
         _, last_value, last_torque_Nm = self._last_row
         value_steps = np.diff(value, prepend=last_value)
+        if self._moves_on(time_s, value, value_steps):
+            self._last_row = (float(time_s[-1]), float(value[-1]), float(torque_Nm[-1]))
+            return
         torque_steps = np.diff(torque_Nm, prepend=last_torque_Nm)
         repeated = (value_steps == 0.0) & (torque_steps == 0.0)
         squares = np.where(np.isfinite(torque_steps), torque_steps**2, 0.0)
@@ -118,6 +121,32 @@ class MovingTally:
         ends = np.arange(len(value)) if self._is_speed else np.flatnonzero(value_steps != 0.0)
         self._count(time_s, value, repeated, squares, ends)
         self._last_row = (float(time_s[-1]), float(value[-1]), float(torque_Nm[-1]))
+
+    def _moves_on(
+        self,
+        time_s: NDArray[np.float64],
+        value: NDArray[np.float64],
+        steps: NDArray[np.float64],
+    ) -> bool:
+        """Take rows in all of which the motor moves; else take nothing, and return False."""
+        assert self._last_row is not None
+        if self._is_speed or self._last_change != self._last_row[:2] or not steps.all():
+            return False
+        if self._wrapped:
+            steps = steps - _TURN_RAD * np.rint(steps / _TURN_RAD)
+        times = np.diff(time_s, prepend=self._last_change[0])
+        np.maximum(times, _SHORTEST_S, out=times)
+        if not (self._speeds_of(steps, times) > MOVING_RAD_S).all():
+            return False
+        self._moving += len(steps)
+        self._add_speeds(steps, times)
+        self._last_change = (float(time_s[-1]), float(value[-1]))
+        return True
+
+    def _speeds_of(
+        self, steps: NDArray[np.float64], times: NDArray[np.float64]
+    ) -> NDArray[np.float64]:
+        return np.abs(steps / times) * self._gain
 
     def _count(
         self,
@@ -145,7 +174,9 @@ class MovingTally:
             steps -= _TURN_RAD * np.rint(steps / _TURN_RAD)
         times = np.diff(time_s[ends], prepend=self._last_change[0])
         np.maximum(times, _SHORTEST_S, out=times)
-        speeds = np.abs(value[ends] if self._is_speed else steps / times) * self._gain
+        speeds = np.abs(value[ends]) * self._gain
+        if not self._is_speed:
+            speeds = self._speeds_of(steps, times)
         moving = speeds > MOVING_RAD_S
         self._moving += int(rows[moving].sum())
         self._repeated += int(repeats[moving].sum())
@@ -172,7 +203,7 @@ class MovingTally:
         self._group = (steps[whole:], times[whole:])
 
     def _add_groups(self, steps: NDArray[np.float64], times: NDArray[np.float64]) -> None:
-        speeds = np.abs(steps / times) * self._gain
+        speeds = self._speeds_of(steps, times)
         self._speeds.add(speeds[speeds > MOVING_RAD_S])
 
     def finish(self) -> Moving:

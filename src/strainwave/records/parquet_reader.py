@@ -10,6 +10,7 @@ import pyarrow.compute as pc
 import pyarrow.parquet as pq
 
 from strainwave.errors import InputError
+from strainwave.records.arrow_arrays import from_arrow, missing_in
 from strainwave.records.raw import RawChunk, Stamps
 
 if TYPE_CHECKING:
@@ -176,8 +177,7 @@ def _numbers(array: pa.Array) -> NDArray[np.float64]:
     if pa.types.is_boolean(array.type):
         array = pc.cast(array, pa.int8())
     # Not "safe": a whole number beyond 2^53 is rounded, as every other number is.
-    cast = pc.cast(array, pa.float64(), safe=False)
-    return np.asarray(cast.to_numpy(zero_copy_only=False), dtype=np.float64)
+    return from_arrow(pc.cast(array, pa.float64(), safe=False), np.nan)
 
 
 def _stamps(array: pa.Array) -> Stamps:
@@ -188,7 +188,6 @@ def _stamps(array: pa.Array) -> Stamps:
         array = array.cast(pa.int32() if array.type.bit_width == 32 else pa.int64())
     if pa.types.is_integer(array.type) and not pa.types.is_uint64(array.type):
         whole = pc.cast(array, pa.int64())
-        missing = np.asarray(pc.is_null(whole).to_numpy(zero_copy_only=False), dtype=np.bool_)
-        return Stamps(pc.fill_null(whole, 0).to_numpy(zero_copy_only=False), missing, unit)
+        return Stamps(from_arrow(whole, 0), missing_in(whole), unit)
     values = _numbers(array)
     return Stamps(values, ~np.isfinite(values), unit)

@@ -8,6 +8,7 @@ from strainwave.records.conversion import Converter
 from strainwave.records.gauge_watch import gauge_watch_of
 from strainwave.records.signals import Rows, SampleBuilder
 from strainwave.records.survey import Survey, Surveyor
+from strainwave.records.threads import made_ahead
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -56,7 +57,7 @@ def survey_recording(
     """
     converter = Converter(layout, found)
     surveyor = Surveyor(layout)
-    for chunk, share in recording.chunks(found):
+    for chunk, share in made_ahead(recording.chunks(found)):
         surveyor.take(converter.convert(chunk))
         progress("surveying", share)
     return surveyor.finish()
@@ -95,7 +96,10 @@ def sample_rows(
     """
     converter = Converter(layout, found)
     builder = SampleBuilder(layout, survey, watch or gauge_watch_of(layout, survey, found))
-    for chunk, share in recording.chunks(found):
-        yield builder.take(converter.convert(chunk))
+    parts = (
+        (builder.take(converter.convert(chunk)), share) for chunk, share in recording.chunks(found)
+    )
+    for rows, share in made_ahead(parts):
+        yield rows
         progress("filtering", share)
     yield builder.finish()

@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 
 _TURN_RAD: Final = 2.0 * math.pi
 _DEGREES_OF_A_TURN: Final = 360.0
+#: A wrapped angle stays within so many turns.
+_WIDEST_TURN: Final = 1.005
 
 
 @dataclass(frozen=True)
@@ -144,23 +146,27 @@ class Surveyor:
             self._count_missing("expected-torque", columns.expected_torque_Nm)
         self._torques.take(columns.torque_Nm)
         usable = self._timing.take(columns) & np.isfinite(value)
-        rows = (columns.time_s[usable], value[usable], columns.torque_Nm[usable])
+        rows = (columns.time_s, value, columns.torque_Nm)
+        if not usable.all():
+            rows = (columns.time_s[usable], value[usable], columns.torque_Nm[usable])
         self._plain.take(*rows)
         if not self._is_speed:
-            self._unwrapped.take(*rows)
             self._take_angle(value)
+            # What has left the range of a turn goes on, and is not wrapped.
+            if self._angles.width <= _WIDEST_TURN * _TURN_RAD:
+                self._unwrapped.take(*rows)
 
     def _count_missing(self, key: str, values: NDArray[np.float64]) -> None:
         missing = int(np.count_nonzero(~np.isfinite(values)))
         self._missing[key] = self._missing.get(key, 0) + missing
 
     def _take_angle(self, angle_rad: NDArray[np.float64]) -> None:
-        known_rad = angle_rad[np.isfinite(angle_rad)]
+        known_rad = _finite(angle_rad)
         if not len(known_rad):
             return
-        steps = np.diff(known_rad, prepend=self._last_angle_rad)
+        steps = np.abs(np.diff(known_rad, prepend=self._last_angle_rad))
         for turn in self._jumps:
-            self._jumps[turn] += int(np.count_nonzero(np.abs(steps) > 0.5 * turn))
+            self._jumps[turn] += int(np.count_nonzero(steps > 0.5 * turn))
         self._last_angle_rad = float(known_rad[-1])
         self._angles.take(known_rad)
 
@@ -173,12 +179,12 @@ class Surveyor:
             Of all rows that were taken.
         """
         lowest, highest = self._angles.ends()
-        width = 0.0 if lowest is None or highest is None else highest - lowest
+        width = self._angles.width
         # Jumps of more than half a turn in a range of just one turn: nothing else looks like that.
         goes_back_after = [
             turn
             for turn, jumps in self._jumps.items()
-            if jumps and 0.9 * turn <= width <= 1.005 * turn
+            if jumps and 0.9 * turn <= width <= _WIDEST_TURN * turn
         ]
         wrapped = _TURN_RAD in goes_back_after
         torque_lowest, torque_highest = self._torques.ends()
@@ -202,10 +208,19 @@ class _Range:
         self._highest = -math.inf
 
     def take(self, values: NDArray[np.float64]) -> None:
-        known = values[np.isfinite(values)]
+        known = _finite(values)
         if len(known):
             self._lowest = min(self._lowest, float(known.min()))
             self._highest = max(self._highest, float(known.max()))
 
+    @property
+    def width(self) -> float:
+        return max(0.0, self._highest - self._lowest)
+
     def ends(self) -> tuple[float, float] | tuple[None, None]:
         return (self._lowest, self._highest) if self._lowest <= self._highest else (None, None)
+
+
+def _finite(values: NDArray[np.float64]) -> NDArray[np.float64]:
+    finite = np.isfinite(values)
+    return values if finite.all() else values[finite]

@@ -113,6 +113,8 @@ class TimingTally:
             Which rows are later than every row before them, shape (rows,).
         """
         time_s = columns.time_s
+        if self._goes_on(columns):
+            return np.ones(len(time_s), np.bool_)
         known = np.isfinite(time_s)
         steps = np.diff(time_s[known], prepend=self._previous)
         self._backward += int((steps < 0.0).sum())
@@ -133,6 +135,20 @@ class TimingTally:
             self._previous = float(time_s[known][-1])
         return in_order
 
+    def _goes_on(self, columns: Columns) -> bool:
+        """Take rows that are each later than the one before; else take nothing, and return False."""
+        time_s = columns.time_s
+        if not len(time_s) or self._previous != self._latest or not np.isfinite(time_s[-1]):
+            return False
+        steps = np.diff(time_s, prepend=self._latest)
+        if not (steps > 0.0).all():
+            return False
+        self._forward += len(steps)
+        self._note_records(steps, np.arange(len(steps)) + columns.first_row)
+        self._intervals.add(steps)
+        self._latest = self._previous = float(time_s[-1])
+        return True
+
     def _note_out_of_order(self, places: NDArray[np.intp], first_row: int) -> None:
         self._out_of_order += len(places)
         if len(places) and self._first_out_of_order is None:
@@ -140,6 +156,8 @@ class TimingTally:
 
     def _note_records(self, intervals: NDArray[np.float64], rows: NDArray[np.intp]) -> None:
         longest = self._records[-1][1] if self._records else 0.0
+        if intervals.max() <= longest:
+            return
         before = np.maximum.accumulate(np.append(longest, intervals))[:-1]
         for place in np.flatnonzero(intervals > before * 1.001):
             self._records.append((int(rows[place]), float(intervals[place])))

@@ -3,19 +3,20 @@
 from __future__ import annotations
 
 import contextlib
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
-import numpy as np
 import pyarrow as pa
 import pyarrow.csv
 import pyarrow.parquet as pq
 
 from strainwave.atomic import replaced_atomically
+from strainwave.records.arrow_arrays import to_arrow
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
     from pathlib import Path
 
+    import numpy as np
     from numpy.typing import NDArray
 
     from strainwave.methods.interface import Cleaned
@@ -60,7 +61,8 @@ def result_file(
                 write_options=pyarrow.csv.WriteOptions(include_header=False),
             )
         else:
-            writer = pq.ParquetWriter(stream, _SCHEMA)
+            # Measured numbers hardly repeat: a dictionary of them takes longer than all the rest.
+            writer = pq.ParquetWriter(stream, _SCHEMA, use_dictionary=["status"])
 
         pending: list[pa.RecordBatch] = []
 
@@ -72,9 +74,12 @@ def result_file(
         def write(
             time_s: NDArray[np.float64], measured_Nm: NDArray[np.float64], cleaned: Cleaned
         ) -> None:
-            numbers = (time_s, measured_Nm, cleaned.torque_Nm, cleaned.ripple_Nm)
-            arrays = [pa.array(values, from_pandas=is_csv) for values in numbers]
-            arrays.append(pa.array(cleaned.status))
+            columns: list[NDArray[Any]] = [time_s, measured_Nm, cleaned.torque_Nm]
+            columns += [cleaned.ripple_Nm, cleaned.status]
+            arrays = [
+                to_arrow(field.type, values, gaps=is_csv)
+                for field, values in zip(_SCHEMA, columns, strict=True)
+            ]
             pending.append(pa.record_batch(arrays, schema=_SCHEMA))
             if sum(batch.num_rows for batch in pending) >= _ROWS_PER_WRITE:
                 flush()
