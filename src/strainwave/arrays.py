@@ -92,6 +92,27 @@ def optional_contiguous(
     return None if values is None else contiguous(name, values, dtype)
 
 
+def steps(values: NDArray[np.float64], before: float) -> NDArray[np.float64]:
+    """Differences from one value to the next, chunk after chunk.
+
+    Parameters
+    ----------
+    values : numpy.ndarray
+        Values, shape (rows,).
+    before : float
+        The last value of the chunk before; NaN where there is none.
+
+    Returns
+    -------
+    numpy.ndarray
+        Each value less the one before it, shape (rows,).
+    """
+    found = np.empty_like(values)
+    found[:1] = values[:1] - before
+    np.subtract(values[1:], values[:-1], out=found[1:])
+    return found
+
+
 def arrays_of(
     out: DataclassInstance | None,
     rows: int,

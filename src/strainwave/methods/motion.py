@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from strainwave.arrays import steps
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
@@ -69,11 +71,11 @@ class BackwardDifference:
         if not len(time_s) or not np.isfinite(time_s[-1]):
             return None
         with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
-            interval_s = np.diff(time_s, prepend=self._time_s)
-            speed_rad_s = np.diff(angle_rad, prepend=self._angle_rad)
+            interval_s = steps(time_s, self._time_s)
+            speed_rad_s = steps(angle_rad, self._angle_rad)
             speed_rad_s /= interval_s
         # What is not a number, or infinite, shows in a speed.
         if not ((interval_s > 0.0).all() and np.isfinite(speed_rad_s).all()):
             return None
-        self._time_s, self._angle_rad = time_s[-1], angle_rad[-1]
+        self._time_s, self._angle_rad = float(time_s[-1]), float(angle_rad[-1])
         return speed_rad_s

@@ -137,8 +137,9 @@ class Converter:
             assert self._layout.chain is not None
             converted = sign * self._layout.chain.volts(values)
         else:
-            converted = values * (sign * unit.factor)
-            converted += unit.offset
+            factor = sign * unit.factor
+            scaled = values if factor == 1.0 else values * factor
+            converted = scaled + unit.offset
         if _within(converted, LARGEST_USABLE):
             return converted
         # What the core would reject is not there: nothing that follows has to think of overflow.

@@ -24,7 +24,6 @@ from strainwave.records.findings import warnings_of
 from strainwave.records.gauge_watch import gauge_watch_of, joined_status
 from strainwave.records.gauge_words import gauge_sentences
 from strainwave.records.in_order import InOrder
-from strainwave.records.kept import KeptRecording
 from strainwave.records.layout import build_layout
 from strainwave.records.method_setting import (
     choose_wave_factor,
@@ -113,7 +112,7 @@ def filter_log(
         check_method(name, METHOD_NAMES)
         build = build_method
     layout = build_layout(options, joint)
-    recording = KeptRecording(open_recording(path))
+    recording = open_recording(path)
     found = find_columns(layout.columns, recording.names, recording.column_count, recording.source)
     survey = survey_recording(recording, layout, found, progress)
     check_survey(recording.source, layout, found, survey)

@@ -328,6 +328,8 @@ def joined_status(status: NDArray[np.uint32], of_gauges: NDArray[np.uint32]) -> 
     numpy.ndarray
         Both; where the gauges are why there is no torque, they alone say so, as in the sensor.
     """
+    if not of_gauges.any():
+        return status
     by_gauges = (of_gauges & WITHOUT_TORQUE) != 0
     missing = np.where(by_gauges, np.uint32(_FLAGS.torque_not_finite), np.uint32(0))
     return np.asarray((status & ~missing) | of_gauges, dtype=np.uint32)

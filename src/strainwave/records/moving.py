@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from strainwave.arrays import steps
 from strainwave.records.histogram import LogHistogram
 
 if TYPE_CHECKING:
@@ -110,11 +111,11 @@ class MovingTally:
             if not len(time_s):
                 return
         _, last_value, last_torque_Nm = self._last_row
-        value_steps = np.diff(value, prepend=last_value)
+        value_steps = steps(value, last_value)
         if self._moves_on(time_s, value, value_steps):
             self._last_row = (float(time_s[-1]), float(value[-1]), float(torque_Nm[-1]))
             return
-        torque_steps = np.diff(torque_Nm, prepend=last_torque_Nm)
+        torque_steps = steps(torque_Nm, last_torque_Nm)
         repeated = (value_steps == 0.0) & (torque_steps == 0.0)
         squares = np.where(np.isfinite(torque_steps), torque_steps**2, 0.0)
         # A mapped speed says for every row by itself how fast the motor is.
@@ -126,27 +127,31 @@ class MovingTally:
         self,
         time_s: NDArray[np.float64],
         value: NDArray[np.float64],
-        steps: NDArray[np.float64],
+        value_steps: NDArray[np.float64],
     ) -> bool:
         """Take rows in all of which the motor moves; else take nothing, and return False."""
         assert self._last_row is not None
-        if self._is_speed or self._last_change != self._last_row[:2] or not steps.all():
+        if self._is_speed or self._last_change != self._last_row[:2] or not value_steps.all():
             return False
+        travels = value_steps
         if self._wrapped:
-            steps = steps - _TURN_RAD * np.rint(steps / _TURN_RAD)
-        times = np.diff(time_s, prepend=self._last_change[0])
+            travels = value_steps - _TURN_RAD * np.rint(value_steps / _TURN_RAD)
+        times = steps(time_s, self._last_change[0])
         np.maximum(times, _SHORTEST_S, out=times)
-        if not (self._speeds_of(steps, times) > MOVING_RAD_S).all():
+        if not (self._speeds_of(travels, times) > MOVING_RAD_S).all():
             return False
-        self._moving += len(steps)
-        self._add_speeds(steps, times)
+        self._moving += len(travels)
+        self._add_speeds(travels, times)
         self._last_change = (float(time_s[-1]), float(value[-1]))
         return True
 
     def _speeds_of(
-        self, steps: NDArray[np.float64], times: NDArray[np.float64]
+        self, travels: NDArray[np.float64], times: NDArray[np.float64]
     ) -> NDArray[np.float64]:
-        return np.abs(steps / times) * self._gain
+        speeds = travels / times
+        np.abs(speeds, out=speeds)
+        speeds *= self._gain
+        return speeds
 
     def _count(
         self,
@@ -169,14 +174,14 @@ class MovingTally:
         rows[0] += since.rows
         repeats[0] += since.repeated
         power[0] += since.squares
-        steps = np.diff(value[ends], prepend=self._last_change[1])
+        travels = steps(value[ends], self._last_change[1])
         if self._wrapped:
-            steps -= _TURN_RAD * np.rint(steps / _TURN_RAD)
-        times = np.diff(time_s[ends], prepend=self._last_change[0])
+            travels -= _TURN_RAD * np.rint(travels / _TURN_RAD)
+        times = steps(time_s[ends], self._last_change[0])
         np.maximum(times, _SHORTEST_S, out=times)
         speeds = np.abs(value[ends]) * self._gain
         if not self._is_speed:
-            speeds = self._speeds_of(steps, times)
+            speeds = self._speeds_of(travels, times)
         moving = speeds > MOVING_RAD_S
         self._moving += int(rows[moving].sum())
         self._repeated += int(repeats[moving].sum())
@@ -185,25 +190,25 @@ class MovingTally:
         if self._is_speed:
             self._speeds.add(speeds[moving])
         else:
-            self._add_speeds(steps, times)
+            self._add_speeds(travels, times)
         self._last_change = (float(time_s[ends[-1]]), float(value[ends[-1]]))
         last = int(ends[-1]) + 1
         self._since = _Since(
             past.rows - last, int(repeated[last:].sum()), float(squares[last:].sum())
         )
 
-    def _add_speeds(self, steps: NDArray[np.float64], times: NDArray[np.float64]) -> None:
-        steps = np.concatenate([self._group[0], steps])
+    def _add_speeds(self, travels: NDArray[np.float64], times: NDArray[np.float64]) -> None:
+        travels = np.concatenate([self._group[0], travels])
         times = np.concatenate([self._group[1], times])
-        whole = len(steps) - len(steps) % _CHANGES_PER_SPEED
+        whole = len(travels) - len(travels) % _CHANGES_PER_SPEED
         self._add_groups(
-            steps[:whole].reshape(-1, _CHANGES_PER_SPEED).sum(axis=1),
+            travels[:whole].reshape(-1, _CHANGES_PER_SPEED).sum(axis=1),
             times[:whole].reshape(-1, _CHANGES_PER_SPEED).sum(axis=1),
         )
-        self._group = (steps[whole:], times[whole:])
+        self._group = (travels[whole:], times[whole:])
 
-    def _add_groups(self, steps: NDArray[np.float64], times: NDArray[np.float64]) -> None:
-        speeds = self._speeds_of(steps, times)
+    def _add_groups(self, travels: NDArray[np.float64], times: NDArray[np.float64]) -> None:
+        speeds = self._speeds_of(travels, times)
         self._speeds.add(speeds[speeds > MOVING_RAD_S])
 
     def finish(self) -> Moving:
@@ -214,9 +219,9 @@ class MovingTally:
         Moving
             Of all rows that were taken.
         """
-        steps, times = self._group
-        if len(steps):
-            self._add_groups(steps.sum(keepdims=True), times.sum(keepdims=True))
+        travels, times = self._group
+        if len(travels):
+            self._add_groups(travels.sum(keepdims=True), times.sum(keepdims=True))
             self._group = (np.empty(0), np.empty(0))
         rest_rows = self._rest_rows + self._since.rows
         rest_squares = self._rest_squares + self._since.squares

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Final
 
 from strainwave.errors import InputError
 from strainwave.records.csv_reader import CsvRecording
+from strainwave.records.kept import KeptRecording
 from strainwave.records.parquet_reader import ParquetRecording
 
 if TYPE_CHECKING:
@@ -41,7 +42,8 @@ def open_recording(path: Path) -> Recording:
         raise InputError(f"{path}: there is no such file; expected a recording, so check the name")
     ending = path.suffix.lower()
     if ending in CSV_ENDINGS:
-        return CsvRecording(path)
+        # Text takes longer to read than Parquet does twice.
+        return KeptRecording(CsvRecording(path))
     if ending in PARQUET_ENDINGS:
         return ParquetRecording(path)
     raise InputError(

@@ -57,8 +57,9 @@ def survey_recording(
     """
     converter = Converter(layout, found)
     surveyor = Surveyor(layout)
-    for chunk, share in made_ahead(recording.chunks(found)):
-        surveyor.take(converter.convert(chunk))
+    parts = ((converter.convert(chunk), share) for chunk, share in recording.chunks(found))
+    for columns, share in made_ahead(parts):
+        surveyor.take(columns)
         progress("surveying", share)
     return surveyor.finish()
 

@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from strainwave.records.acceleration import CentredAcceleration
 from strainwave.samples import Samples
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+    from strainwave.records.acceleration import CentredAcceleration
     from strainwave.records.conversion import Columns
     from strainwave.records.gauge_watch import GaugeWatch
     from strainwave.records.layout import Layout
@@ -170,6 +170,9 @@ class SampleBuilder:
         self._acceleration: CentredAcceleration | None = None
         self._torque_per_acceleration = 0.0
         if layout.load_inertia_kg_m2 is not None:
+            # Who has no load inertia does not wait for the library.
+            from strainwave.records.acceleration import CentredAcceleration  # noqa: PLC0415
+
             self._acceleration = CentredAcceleration(survey.sample_period_s, survey.rows)
             # From the motor's acceleration; an output angle is taken in its own direction.
             ratio = self._gain

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from strainwave.arrays import steps
 from strainwave.records.moving import Moving, MovingTally
 from strainwave.records.timing import Timing, TimingTally
 
@@ -145,9 +146,10 @@ class Surveyor:
         if columns.expected_torque_Nm is not None:
             self._count_missing("expected-torque", columns.expected_torque_Nm)
         self._torques.take(columns.torque_Nm)
-        usable = self._timing.take(columns) & np.isfinite(value)
         rows = (columns.time_s, value, columns.torque_Nm)
-        if not usable.all():
+        usable = self._timing.take(columns)
+        if not (usable.all() and _are_finite(value)):
+            usable &= np.isfinite(value)
             rows = (columns.time_s[usable], value[usable], columns.torque_Nm[usable])
         self._plain.take(*rows)
         if not self._is_speed:
@@ -157,16 +159,16 @@ class Surveyor:
                 self._unwrapped.take(*rows)
 
     def _count_missing(self, key: str, values: NDArray[np.float64]) -> None:
-        missing = int(np.count_nonzero(~np.isfinite(values)))
+        missing = 0 if _are_finite(values) else int(np.count_nonzero(~np.isfinite(values)))
         self._missing[key] = self._missing.get(key, 0) + missing
 
     def _take_angle(self, angle_rad: NDArray[np.float64]) -> None:
         known_rad = _finite(angle_rad)
         if not len(known_rad):
             return
-        steps = np.abs(np.diff(known_rad, prepend=self._last_angle_rad))
+        changes_rad = np.abs(steps(known_rad, self._last_angle_rad))
         for turn in self._jumps:
-            self._jumps[turn] += int(np.count_nonzero(steps > 0.5 * turn))
+            self._jumps[turn] += int(np.count_nonzero(changes_rad > 0.5 * turn))
         self._last_angle_rad = float(known_rad[-1])
         self._angles.take(known_rad)
 
@@ -222,5 +224,9 @@ class _Range:
 
 
 def _finite(values: NDArray[np.float64]) -> NDArray[np.float64]:
-    finite = np.isfinite(values)
-    return values if finite.all() else values[finite]
+    return values if _are_finite(values) else values[np.isfinite(values)]
+
+
+def _are_finite(values: NDArray[np.float64]) -> bool:
+    # Both ends of a range are finite only where all of it is: quicker than a look at each value.
+    return len(values) == 0 or bool(np.isfinite(values.min()) and np.isfinite(values.max()))

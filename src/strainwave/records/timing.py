@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from strainwave.arrays import steps
 from strainwave.records.histogram import LogHistogram
 
 if TYPE_CHECKING:
@@ -21,6 +22,8 @@ GAP_INTERVALS: Final = 10.0
 """An interval of more than so many median ones is a gap."""
 GAP_S: Final = 0.5
 """An interval longer than this is a gap, in s, unless the recording is that slow."""
+#: An interval is longer than another one from this multiple on: rounding is none.
+_LONGER: Final = 1.001
 
 
 @dataclass(frozen=True)
@@ -116,18 +119,17 @@ class TimingTally:
         if self._goes_on(columns):
             return np.ones(len(time_s), np.bool_)
         known = np.isfinite(time_s)
-        steps = np.diff(time_s[known], prepend=self._previous)
-        self._backward += int((steps < 0.0).sum())
-        self._forward += int((steps > 0.0).sum())
+        changes = steps(time_s[known], self._previous)
+        self._backward += int((changes < 0.0).sum())
+        self._forward += int((changes > 0.0).sum())
         latest = np.maximum.accumulate(np.append(self._latest, np.where(known, time_s, -np.inf)))
         in_order = known & (time_s > latest[:-1])
         self._note_out_of_order(np.flatnonzero(known & ~in_order), columns.first_row)
         stamps = time_s[in_order]
         if len(stamps):
             before = self._latest if np.isfinite(self._latest) else stamps[0]
-            intervals = np.diff(stamps, prepend=before)
-            rows = np.flatnonzero(in_order) + columns.first_row
-            self._note_records(intervals, rows)
+            intervals = steps(stamps, before)
+            self._note_records(intervals, columns.first_row, np.flatnonzero(in_order))
             self._intervals.add(intervals[intervals > 0.0])
             self._latest = float(stamps[-1])
         if known.any():
@@ -140,12 +142,12 @@ class TimingTally:
         time_s = columns.time_s
         if not len(time_s) or self._previous != self._latest or not np.isfinite(time_s[-1]):
             return False
-        steps = np.diff(time_s, prepend=self._latest)
-        if not (steps > 0.0).all():
+        intervals = steps(time_s, self._latest)
+        if not (intervals > 0.0).all():
             return False
-        self._forward += len(steps)
-        self._note_records(steps, np.arange(len(steps)) + columns.first_row)
-        self._intervals.add(steps)
+        self._forward += len(intervals)
+        self._note_records(intervals, columns.first_row)
+        self._intervals.add(intervals)
         self._latest = self._previous = float(time_s[-1])
         return True
 
@@ -154,13 +156,19 @@ class TimingTally:
         if len(places) and self._first_out_of_order is None:
             self._first_out_of_order = int(places[0]) + first_row
 
-    def _note_records(self, intervals: NDArray[np.float64], rows: NDArray[np.intp]) -> None:
+    def _note_records(
+        self,
+        intervals: NDArray[np.float64],
+        first_row: int,
+        places: NDArray[np.intp] | None = None,
+    ) -> None:
         longest = self._records[-1][1] if self._records else 0.0
-        if intervals.max() <= longest:
+        if intervals.max() <= longest * _LONGER:
             return
         before = np.maximum.accumulate(np.append(longest, intervals))[:-1]
-        for place in np.flatnonzero(intervals > before * 1.001):
-            self._records.append((int(rows[place]), float(intervals[place])))
+        for at in np.flatnonzero(intervals > before * _LONGER):
+            place = at if places is None else places[at]
+            self._records.append((int(place) + first_row, float(intervals[at])))
 
     def finish(self) -> Timing:
         """Say what the stamps say.
