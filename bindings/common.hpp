@@ -111,7 +111,7 @@ class CallLock {
   void wait() const {
     while (running_) {
       const nb::gil_scoped_release release;
-      const std::lock_guard until_end(mutex_);
+      const std::scoped_lock until_end(mutex_);
     }
   }
 
