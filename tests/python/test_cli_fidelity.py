@@ -17,8 +17,10 @@ import pytest
 
 from helpers.fidelity_joints import GEAR, joint_text, oscillator, ripple, signals
 from helpers.log_files import MAP, command, healthy, write_csv
+from strainwave import RippleFilterConfig
 from strainwave.fidelity.of_joint import subject_of_setting
 from strainwave.fidelity.warning import fidelity_warnings
+from strainwave.identify.ripple_settings import RippleSettings, Terms
 from strainwave.methods.registry import METHOD_NAMES, Setting, build_method
 from strainwave.samples import Samples
 
@@ -192,6 +194,16 @@ def test_what_the_filter_chose_is_what_is_measured() -> None:
     again = Setting(1e-3, None, 100.0, excerpt=excerpt, ripple_settings=method.settings)
     assert subject_of_setting("ripple", again).memory_turns == method.settings.config.memory_turns
     assert fidelity_warnings("ripple", setting, method) == ()
+
+
+def test_another_method_is_advised_where_there_is_a_better_one() -> None:
+    config = RippleFilterConfig(orders=[2, 4], memory_turns=0.1, rated_torque_Nm=100.0)
+    settings = RippleSettings(config, Terms(), is_chosen=False)
+    setting = Setting(1e-3, None, 100.0, ripple_settings=settings)
+    (said,) = fidelity_warnings("ripple", setting, build_method("ripple", setting))
+    assert said.endswith("; see `strainwave fidelity`")
+    (said,) = fidelity_warnings("low-pass", setting, build_method("low-pass", setting))
+    assert said.endswith("; see `strainwave fidelity`, or use method ripple")
 
 
 @pytest.mark.parametrize("rate_Hz", [1.0, 100.0, 1000.0, 10_000.0, 1e6])

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Final
 from strainwave.errors import InputError
 from strainwave.fidelity.assessment import assess_shortly
 from strainwave.fidelity.of_joint import subject_of_setting
+from strainwave.methods.registry import DEFAULT_METHOD
 
 if TYPE_CHECKING:
     from strainwave.methods.interface import Method
@@ -51,7 +52,8 @@ def fidelity_warnings(name: str, setting: Setting, method: Method) -> tuple[str,
         return ()
     if not assessment.reasons:
         return ()
+    other = "" if name == DEFAULT_METHOD else f", or use method {DEFAULT_METHOD}"
     return (
         f"method {name} {assessment.verdict}: {assessment.reasons[0]}; see "
-        "`strainwave fidelity`, or use method ripple",
+        f"`strainwave fidelity`{other}",
     )
