@@ -12,6 +12,12 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence
 
 
+class _ResultConsole(Console):
+    def on_broken_pipe(self) -> None:
+        # The command line's own end, and not rich's.
+        raise BrokenPipeError
+
+
 def print_json(result: Mapping[str, Any]) -> None:
     """Print a result for a program to read.
 
@@ -31,7 +37,7 @@ def result_console() -> Console:
     rich.console.Console
         Writes to the standard output; lines are as wide as they need to be where it is no terminal.
     """
-    return Console(highlight=False, width=None if sys.stdout.isatty() else 150)
+    return _ResultConsole(highlight=False, width=None if sys.stdout.isatty() else 150)
 
 
 def progress_console() -> Console:
