@@ -18,7 +18,7 @@ from strainwave.calibrate.locked_positions import (
     position_dependence,
 )
 from strainwave.calibrate.temperature_drift import temperature_drift
-from strainwave.calibrate.uncertainty import Component, combine, grubbs_outlier
+from strainwave.calibrate.uncertainty import Component, combine, freedom_text, grubbs_outlier
 from strainwave.errors import InputError
 
 
@@ -188,3 +188,12 @@ def test_grubbs_has_no_unit_and_no_order(factor: float, turn: int) -> None:
     values = np.roll([6.6, 6.61, 6.59, 6.6, 6.62, 7.5], turn)
     assert grubbs_outlier(factor * values) == int(np.argmax(values))
     assert grubbs_outlier(factor * np.minimum(values, 6.62)) is None
+
+
+def test_one_degree_of_freedom_is_one() -> None:
+    assert freedom_text("1") == "1 degree of freedom"
+    assert [freedom_text(each) for each in ("0", "1.5", "11")] == [
+        "0 degrees of freedom",
+        "1.5 degrees of freedom",
+        "11 degrees of freedom",
+    ]

@@ -97,6 +97,22 @@ def combine(components: Iterable[Component]) -> Budget:
     return Budget(parts, combined, freedom, factor, factor * combined)
 
 
+def freedom_text(degrees: str) -> str:
+    """Say degrees of freedom.
+
+    Parameters
+    ----------
+    degrees : str
+        Their number.
+
+    Returns
+    -------
+    str
+        The number with its words.
+    """
+    return f"{degrees} degree{'' if degrees == '1' else 's'} of freedom"
+
+
 def grubbs_outlier(values: ArrayLike, level: float = 0.05) -> int | None:
     """Find the value that stands out by Grubbs' test, two-sided.
 

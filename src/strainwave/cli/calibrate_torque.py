@@ -238,15 +238,17 @@ def _drift(fit: TorqueFit) -> Iterator[str]:
 def _budget(of: str, budget: Budget, unit: str) -> Iterator[str]:
     import math
 
+    from strainwave.calibrate.uncertainty import freedom_text
+
     if not budget.components:
         return
     yield f"uncertainty of the {of}"
     for part in budget.components:
         freedom = part.degrees_of_freedom
-        degrees = "known" if math.isinf(freedom) else f"{freedom:g} degrees of freedom"
+        degrees = "known" if math.isinf(freedom) else freedom_text(f"{freedom:g}")
         yield f"  {part.standard_uncertainty:10.3g} {unit:<5} {part.kind}  {part.name} ({degrees})"
     freedom = budget.degrees_of_freedom
-    degrees = "" if math.isinf(freedom) else f", {freedom:.3g} degrees of freedom"
+    degrees = "" if math.isinf(freedom) else ", " + freedom_text(f"{freedom:.3g}")
     yield (
         f"  {budget.combined:10.3g} {unit:<5}    combined{degrees}; expanded (95 %, "
         f"k = {budget.coverage_factor:.3g}) {budget.expanded:.3g} {unit}"

@@ -9,6 +9,7 @@ import numpy as np
 
 from strainwave.calibrate.poses import Poses
 from strainwave.calibrate.tare import CONFIDENCE, Tare
+from strainwave.calibrate.uncertainty import freedom_text
 from strainwave.records.identified_log import measured_text
 
 if TYPE_CHECKING:
@@ -146,7 +147,7 @@ def refusal(path: Path, found: Tare, payload: Payload, source: str) -> str:
     sentence = (
         f"{path}: {what} not explain the poses: they scatter by {found.scatter_Nm:.3g} Nm around the "
         f"model, chi-square {found.chi_square:.3g} where a right model stays below {found.limit:.3g} "
-        f"in {CONFIDENCE:.0%} of all cases ({found.degrees_of_freedom} degrees of freedom, the "
+        f"in {CONFIDENCE:.0%} of all cases ({freedom_text(str(found.degrees_of_freedom))}, the "
         f"sensor's scatter as by {_SOURCES[source]})"
     )
     share, share_u = found.model_share, found.model_share_standard_uncertainty
