@@ -1,7 +1,7 @@
 """Between Arrow's arrays and numpy's, without copies.
 
 Arrow's own ways there and back import pandas wherever it is installed, which takes longer than
-reading a million rows.
+reading a million rows. Its functions are named as methods of arrays, which load them when first used.
 """
 
 from __future__ import annotations
@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pyarrow as pa
-import pyarrow.compute as pc
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -31,7 +30,7 @@ def from_arrow(array: pa.Array, missing: float) -> NDArray[Any]:
     numpy.ndarray
         The same memory, read-only, where all are there.
     """
-    filled = array if array.null_count == 0 else pc.fill_null(array, missing)
+    filled = array if array.null_count == 0 else array.fill_null(missing)
     found: NDArray[Any] = np.from_dlpack(filled)
     return found
 
@@ -52,7 +51,7 @@ def missing_in(array: pa.Array) -> NDArray[np.bool_]:
     if array.null_count == 0:
         return np.zeros(len(array), np.bool_)
     # Arrow keeps truths as bits, numpy as bytes.
-    return from_arrow(pc.cast(pc.is_null(array), pa.uint8()), 0).view(np.bool_)
+    return from_arrow(array.is_null().cast(pa.uint8()), 0).view(np.bool_)
 
 
 def to_arrow(kind: pa.DataType, values: NDArray[Any], *, gaps: bool = False) -> pa.Array:

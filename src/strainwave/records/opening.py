@@ -5,9 +5,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Final
 
 from strainwave.errors import InputError
-from strainwave.records.csv_reader import CsvRecording
-from strainwave.records.kept import KeptRecording
-from strainwave.records.parquet_reader import ParquetRecording
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -41,10 +38,16 @@ def open_recording(path: Path) -> Recording:
     if not path.exists():
         raise InputError(f"{path}: there is no such file; expected a recording, so check the name")
     ending = path.suffix.lower()
+    # Each kind loads its reader: who reads Parquet does not wait for that of text.
     if ending in CSV_ENDINGS:
+        from strainwave.records.csv_reader import CsvRecording  # noqa: PLC0415
+        from strainwave.records.kept import KeptRecording  # noqa: PLC0415
+
         # Text takes longer to read than Parquet does twice.
         return KeptRecording(CsvRecording(path))
     if ending in PARQUET_ENDINGS:
+        from strainwave.records.parquet_reader import ParquetRecording  # noqa: PLC0415
+
         return ParquetRecording(path)
     raise InputError(
         f"{path}: the name ends in {path.suffix!r}; expected "

@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 import pyarrow as pa
-import pyarrow.compute as pc
 import pyarrow.parquet as pq
 
 from strainwave.errors import InputError
@@ -175,9 +174,11 @@ def _decoded(array: pa.Array) -> pa.Array:
 def _numbers(array: pa.Array) -> NDArray[np.float64]:
     array = _decoded(array)
     if pa.types.is_boolean(array.type):
-        array = pc.cast(array, pa.int8())
-    # Not "safe": a whole number beyond 2^53 is rounded, as every other number is.
-    return from_arrow(pc.cast(array, pa.float64(), safe=False), np.nan)
+        array = array.cast(pa.int8())
+    if not pa.types.is_float64(array.type):
+        # Not "safe": a whole number beyond 2^53 is rounded, as every other number is.
+        array = array.cast(pa.float64(), safe=False)
+    return from_arrow(array, np.nan)
 
 
 def _stamps(array: pa.Array) -> Stamps:
@@ -187,7 +188,7 @@ def _stamps(array: pa.Array) -> Stamps:
         unit = array.type.unit
         array = array.cast(pa.int32() if array.type.bit_width == 32 else pa.int64())
     if pa.types.is_integer(array.type) and not pa.types.is_uint64(array.type):
-        whole = pc.cast(array, pa.int64())
+        whole = array.cast(pa.int64())
         return Stamps(from_arrow(whole, 0), missing_in(whole), unit)
     values = _numbers(array)
     return Stamps(values, ~np.isfinite(values), unit)

@@ -6,8 +6,6 @@ import contextlib
 from typing import TYPE_CHECKING, Any, Final
 
 import pyarrow as pa
-import pyarrow.csv
-import pyarrow.parquet as pq
 
 from strainwave.atomic import replaced_atomically
 from strainwave.records.arrow_arrays import to_arrow
@@ -18,6 +16,8 @@ if TYPE_CHECKING:
 
     import numpy as np
     from numpy.typing import NDArray
+    from pyarrow.csv import CSVWriter
+    from pyarrow.parquet import ParquetWriter
 
     from strainwave.methods.interface import Cleaned
 
@@ -51,18 +51,18 @@ def result_file(
     """
     is_csv = path.suffix.lower() == ".csv"
     with replaced_atomically(path) as stream:
-        writer: pyarrow.csv.CSVWriter | pq.ParquetWriter
+        writer: CSVWriter | ParquetWriter
         if is_csv:
+            from pyarrow.csv import CSVWriter, WriteOptions  # noqa: PLC0415 - where it is used
+
             # Arrow puts names in quotes, which no reader of ours needs.
             stream.write(_CSV_HEADER)
-            writer = pyarrow.csv.CSVWriter(
-                stream,
-                _SCHEMA,
-                write_options=pyarrow.csv.WriteOptions(include_header=False),
-            )
+            writer = CSVWriter(stream, _SCHEMA, write_options=WriteOptions(include_header=False))
         else:
+            from pyarrow.parquet import ParquetWriter  # noqa: PLC0415 - where it is used
+
             # Measured numbers hardly repeat: a dictionary of them takes longer than all the rest.
-            writer = pq.ParquetWriter(stream, _SCHEMA, use_dictionary=["status"])
+            writer = ParquetWriter(stream, _SCHEMA, use_dictionary=["status"])
 
         pending: list[pa.RecordBatch] = []
 
