@@ -153,8 +153,7 @@ def run_loop(
         sensed_Nm[k] = joint.torque_Nm + noise_Nm[k] + (artefact(joint) if with_ripple else 0.0)
         used_Nm[k] = sensed_Nm[k]
         if clean is not None:
-            step = clean.process(time_s[k : k + 1], [joint.angle_rad], sensed_Nm[k : k + 1])
-            used_Nm[k] = step.torque_Nm[0]
+            used_Nm[k] = clean.step(time_s[k], joint.angle_rad, sensed_Nm[k])
         # The command takes effect a period after the sample: computing takes its time.
         joint.advance(command_rad_s, environment_rad[k * DRIVE_STEPS : (k + 1) * DRIVE_STEPS])
         error_Nm = wanted_Nm[k] - used_Nm[k]
