@@ -10,7 +10,7 @@
 #include <cstddef>
 #include <type_traits>
 
-#include "strainwave/lanes.hpp"
+#include "strainwave/number_row.hpp"
 
 namespace strainwave::detail {
 
@@ -18,7 +18,7 @@ namespace strainwave::detail {
 /// option, so that objects compiled with different options agree on it.
 [[nodiscard]] constexpr std::size_t column_length(std::size_t states) {
 #if defined(__x86_64__) || defined(__aarch64__)
-  const std::size_t step = states <= 2 ? 2 : states <= 4 ? 4 : lane_count;
+  const std::size_t step = states <= 2 ? 2 : states <= 4 ? 4 : row_lane_count;
   return (states + step - 1) / step * step;
 #else
   return states;
@@ -37,19 +37,19 @@ template <class Real>
   return value;
 }
 
-/// `start` and the products of two rows of numbers: those that are lane_count apart first, then
+/// `start` and the products of two rows of numbers: those that are row_lane_count apart first, then
 /// halves.
 template <class Real>
 [[nodiscard]] constexpr Real sum_of_products(std::size_t count, const Real* a, const Real* b,
                                              Real start) {
-  Real lanes[lane_count] = {start + a[0] * b[0]};
+  Real lanes[row_lane_count] = {start + a[0] * b[0]};
 #pragma GCC unroll 8
   for (std::size_t i = 1; i < count; ++i) {
     const Real product = a[i] * b[i];
-    lanes[i % lane_count] = i < lane_count ? product : lanes[i % lane_count] + product;
+    lanes[i % row_lane_count] = i < row_lane_count ? product : lanes[i % row_lane_count] + product;
   }
 #pragma GCC unroll 8
-  for (std::size_t half = lane_count / 2; half > 0; half /= 2) {
+  for (std::size_t half = row_lane_count / 2; half > 0; half /= 2) {
 #pragma GCC unroll 8
     for (std::size_t i = 0; i < half; ++i) {
       lanes[i] = i + half < count ? lanes[i] + lanes[i + half] : lanes[i];
@@ -58,20 +58,20 @@ template <class Real>
   return lanes[0];
 }
 
-#if defined(STRAINWAVE_LANES)
+#if defined(STRAINWAVE_NUMBER_ROWS)
 
 /// Elements above the diagonal repeat those below it to the last bit.
 inline constexpr bool whole_columns = true;
 
 template <class Real, std::size_t Length>
-using CovarianceWithOutput = Lanes<Real, Length>;
+using CovarianceWithOutput = NumberRow<Real, Length>;
 
 /// P C', and C P C' + R, which is returned.
 template <class Real, std::size_t Length>
 [[nodiscard]] inline Real project(std::size_t count, const Real (*p)[Length], const Real* output,
                                   Real measurement_noise_variance_Nm2,
-                                  Lanes<Real, Length>& covariance_with_output) {
-  using Row = Lanes<Real, Length>;
+                                  NumberRow<Real, Length>& covariance_with_output) {
+  using Row = NumberRow<Real, Length>;
   covariance_with_output = Row::load(p[0]) * Row::all(output[0]);
 #pragma GCC unroll 8
   for (std::size_t j = 1; j < count; ++j) {
@@ -85,9 +85,9 @@ template <class Real, std::size_t Length>
 template <class Real, std::size_t Length>
 inline void learn(std::size_t count, Real (*p)[Length], Real* states_Nm,
                   const Real* process_noise_variance_Nm2,
-                  const Lanes<Real, Length>& covariance_with_output, Real per_variance,
+                  const NumberRow<Real, Length>& covariance_with_output, Real per_variance,
                   Real innovation_Nm) {
-  using Row = Lanes<Real, Length>;
+  using Row = NumberRow<Real, Length>;
   (Row::load(states_Nm) + Row::all(per_variance * innovation_Nm) * covariance_with_output)
       .store(states_Nm);
   Real elements[Length];  // NOLINT(*-member-init): filled in the next line

@@ -1,4 +1,4 @@
-#include "strainwave/lanes.hpp"
+#include "strainwave/number_row.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,12 +8,12 @@
 
 #include "strainwave/oscillator_covariance.hpp"
 
-#if defined(STRAINWAVE_LANES)
+#if defined(STRAINWAVE_NUMBER_ROWS)
 
 namespace {
 
-using strainwave::detail::lane_count;
-using strainwave::detail::Lanes;
+using strainwave::detail::row_lane_count;
+using strainwave::detail::NumberRow;
 
 /// Numbers whose sum depends on the order of the additions.
 template <class Real, std::size_t Count>
@@ -30,7 +30,7 @@ struct Row {
 
 template <class Real, std::size_t Count>
 void expect_lanes_are_numbers_side_by_side() {
-  using Of = Lanes<Real, Count>;
+  using Of = NumberRow<Real, Count>;
   for (std::uint32_t seed = 1; seed < 200; ++seed) {
     const Row<Real, Count> a(seed);
     const Row<Real, Count> b(seed + 1000);
@@ -50,7 +50,7 @@ void expect_lanes_are_numbers_side_by_side() {
 
 template <class Real, std::size_t Count>
 void expect_join_at_every_lane() {
-  using Of = Lanes<Real, Count>;
+  using Of = NumberRow<Real, Count>;
   for (std::size_t first = 0; first <= Count; ++first) {
     Real joined[Count];
     Of::joined(static_cast<std::ptrdiff_t>(first), Of::all(Real(1)), Of::all(Real(2)))
@@ -64,7 +64,7 @@ void expect_join_at_every_lane() {
 /// The sum over lanes is that of a processor without them, to the last bit.
 template <class Real, std::size_t Count>
 void expect_sum_of_a_processor_without_lanes() {
-  using Of = Lanes<Real, Count>;
+  using Of = NumberRow<Real, Count>;
   Real ones[Count];
   Of::all(Real(1)).store(ones);
   for (std::uint32_t seed = 1; seed < 200; ++seed) {
@@ -82,21 +82,21 @@ void expect_all() {
 }
 
 template <class Real>
-class LanesOf : public testing::Test {};
+class NumberRowOf : public testing::Test {};
 using Precisions = testing::Types<float, double>;
-TYPED_TEST_SUITE(LanesOf, Precisions);
+TYPED_TEST_SUITE(NumberRowOf, Precisions);
 
-TYPED_TEST(LanesOf, AreNumbersSideBySideInEveryLength) {
+TYPED_TEST(NumberRowOf, AreNumbersSideBySideInEveryLength) {
   expect_all<TypeParam, 2>();
   expect_all<TypeParam, 4>();
-  expect_all<TypeParam, lane_count>();
-  expect_all<TypeParam, 2 * lane_count>();
-  expect_all<TypeParam, 3 * lane_count>();
+  expect_all<TypeParam, row_lane_count>();
+  expect_all<TypeParam, 2 * row_lane_count>();
+  expect_all<TypeParam, 3 * row_lane_count>();
 }
 
-TYPED_TEST(LanesOf, SignOfZeroIsKept) {
+TYPED_TEST(NumberRowOf, SignOfZeroIsKept) {
   TypeParam zeros[4];
-  Lanes<TypeParam, 4>::all(-TypeParam(0)).store(zeros);
+  NumberRow<TypeParam, 4>::all(-TypeParam(0)).store(zeros);
   for (const TypeParam each : zeros) {
     EXPECT_TRUE(std::signbit(each));
   }

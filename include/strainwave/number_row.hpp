@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/// @file lanes.hpp
+/// @file number_row.hpp
 /// A row of numbers that the processor computes side by side.
 ///
 /// The compiler's vectors, in registers as long as the processor has them.  What is computed does
@@ -14,16 +14,16 @@
 
 #if (defined(__x86_64__) || defined(__aarch64__)) && defined(__has_builtin)
 #if __has_builtin(__builtin_shufflevector)
-#define STRAINWAVE_LANES 1
+#define STRAINWAVE_NUMBER_ROWS 1
 #endif
 #endif
 
 namespace strainwave::detail {
 
 /// Numbers that are summed side by side.
-inline constexpr std::size_t lane_count = 8;
+inline constexpr std::size_t row_lane_count = 8;
 
-#if defined(STRAINWAVE_LANES)
+#if defined(STRAINWAVE_NUMBER_ROWS)
 
 #if defined(__AVX__)
 inline constexpr std::size_t register_bytes = 32;
@@ -31,7 +31,7 @@ inline constexpr std::size_t register_bytes = 32;
 inline constexpr std::size_t register_bytes = 16;
 #endif
 
-/// Lanes of one register.
+/// NumberRow of one register.
 template <class Real, std::size_t Count>
 struct OneRegister {
   using Index = std::conditional_t<sizeof(Real) == 4, std::int32_t, std::int64_t>;
@@ -85,15 +85,15 @@ struct SeveralRegisters;
 
 /// `Count` numbers side by side: 2, 4, 8 or a multiple of 8.
 template <class Real, std::size_t Count>
-using Lanes = std::conditional_t<Count <= lane_count && Count * sizeof(Real) <= register_bytes,
+using NumberRow = std::conditional_t<Count <= row_lane_count && Count * sizeof(Real) <= register_bytes,
                                  OneRegister<Real, Count>, SeveralRegisters<Real, Count>>;
 
-/// Lanes of several registers: two halves, or the first lane_count lanes and the others.
+/// Numbers of several registers: two halves, or the first row_lane_count lanes and the others.
 template <class Real, std::size_t Count>
 struct SeveralRegisters {
-  static constexpr std::size_t low_count = Count > lane_count ? lane_count : Count / 2;
-  using Low = Lanes<Real, low_count>;
-  using High = Lanes<Real, Count - low_count>;
+  static constexpr std::size_t low_count = Count > row_lane_count ? row_lane_count : Count / 2;
+  using Low = NumberRow<Real, low_count>;
+  using High = NumberRow<Real, Count - low_count>;
 
   Low low;
   High high;
@@ -125,9 +125,9 @@ struct SeveralRegisters {
             High::joined(first - static_cast<std::ptrdiff_t>(low_count), one.high, other.high)};
   }
 
-  /// Lanes that are lane_count apart first, one after the other; then halves.
+  /// NumberRow that are row_lane_count apart first, one after the other; then halves.
   [[nodiscard]] Real sum() const {
-    if constexpr (Count > lane_count) {
+    if constexpr (Count > row_lane_count) {
       return sum_of_rest(low, high).sum();
     } else {
       return (low + high).sum();
