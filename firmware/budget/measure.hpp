@@ -57,8 +57,8 @@ extern "C" std::uint32_t stack_limit[];
 inline constexpr std::uint32_t block_length = 64;
 inline constexpr std::uint32_t warm_up_blocks = 64;
 inline constexpr std::uint32_t counted_blocks = 64;
-/// Updates of a run whose every instruction is logged.
-inline constexpr std::uint32_t traced_updates = 42;
+/// Of a run whose every instruction is logged: until the speed, smoothed over 10 ms, is there.
+inline constexpr std::uint32_t traced_blocks = 4;
 
 inline void print(const char* key, std::uint32_t value) {
   console::put(key);

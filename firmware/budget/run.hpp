@@ -59,9 +59,11 @@ int run(typename Bench<Subject>::Update update) {
   console::open();
   start_clock();
   if (semihosting::last_argument_is("trace")) {
-    bench.prepare(false);
-    for (std::uint32_t k = 0; k < traced_updates; ++k) {
-      update(bench.state, bench.samples[k]);
+    for (std::uint32_t b = 0; b < traced_blocks; ++b) {
+      bench.prepare(false);
+      for (const Sample& each : bench.samples) {
+        update(bench.state, each);
+      }
     }
     return 0;
   }

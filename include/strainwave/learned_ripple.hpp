@@ -32,19 +32,20 @@ template <class Real, std::size_t MaxPairs>
   if (index >= config.order_count || index >= MaxPairs) {
     return ripple;
   }
-  detail::Factors<Real> factors;
-  detail::factors_now(config, state, factors);
   std::size_t i = 1;
   for (std::size_t a = 0; a < index; ++a) {
     i += 2 * pairs_of(config.orders[a]);
   }
-  for (std::size_t f = 0; f < detail::Factors<Real>::count; ++f) {
-    const bool has_room = i + 1 < RippleFilterState<Real, MaxPairs>::max_states;
-    if (has_room && detail::has_factor(config.orders[index], f)) {
-      ripple.cosine_Nm += factors.values[f] * state.states_Nm[i];
-      ripple.sine_Nm += factors.values[f] * state.states_Nm[i + 1];
-      i += 2;
-    }
+  const auto terms = detail::terms_of(config.orders[index], detail::factors_now(config, state));
+  const std::size_t count = further_pairs_of(config.orders[index]);
+  if (i + 2 * count + 1 >= RippleFilterState<Real, MaxPairs>::max_states) {
+    return ripple;
+  }
+  ripple.cosine_Nm = state.states_Nm[i];
+  ripple.sine_Nm = state.states_Nm[i + 1];
+  for (std::size_t t = 0; t < count; ++t) {
+    ripple.cosine_Nm += terms.factors[t] * state.states_Nm[i + 2 * t + 2];
+    ripple.sine_Nm += terms.factors[t] * state.states_Nm[i + 2 * t + 3];
   }
   ripple.amplitude_Nm =
       square_root(ripple.cosine_Nm * ripple.cosine_Nm + ripple.sine_Nm * ripple.sine_Nm);
@@ -93,7 +94,9 @@ template <class Real, std::size_t MaxPairs>
   }
   for (std::size_t i = 0; i < 2 * pair_count(config) && i < 2 * MaxPairs; ++i) {
     kept.coefficients_Nm[i] = state.states_Nm[i + 1];
-    kept.standard_deviations_Nm[i] = square_root(detail::variance_of(state.covariance, i));
+    const Real variance_Nm2 =
+        detail::covariance_of(config, state.covariance, 2 * pair_count(config), i + 1, i + 1);
+    kept.standard_deviations_Nm[i] = variance_Nm2 > Real(0) ? square_root(variance_Nm2) : Real(0);
   }
   kept.innovation_scale_Nm = state.innovation_scale_Nm;
   return kept;
@@ -150,7 +153,7 @@ template <class Real, std::size_t MaxPairs>
     deviation_Nm = deviation_Nm > least_Nm ? deviation_Nm : least_Nm;
     deviation_Nm =
         deviation_Nm < config.initial_amplitude_Nm ? deviation_Nm : config.initial_amplitude_Nm;
-    state.covariance.variances_Nm2[i] = deviation_Nm * deviation_Nm;
+    detail::set_element(state.covariance, i, i, deviation_Nm * deviation_Nm);
   }
   if (kept.innovation_scale_Nm > Real(0.5) * config.torque_noise_Nm) {
     state.innovation_scale_Nm = kept.innovation_scale_Nm;

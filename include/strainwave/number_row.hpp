@@ -85,8 +85,9 @@ struct SeveralRegisters;
 
 /// `Count` numbers side by side: 2, 4, 8 or a multiple of 8.
 template <class Real, std::size_t Count>
-using NumberRow = std::conditional_t<Count <= row_lane_count && Count * sizeof(Real) <= register_bytes,
-                                 OneRegister<Real, Count>, SeveralRegisters<Real, Count>>;
+using NumberRow =
+    std::conditional_t<Count <= row_lane_count && Count * sizeof(Real) <= register_bytes,
+                       OneRegister<Real, Count>, SeveralRegisters<Real, Count>>;
 
 /// Numbers of several registers: two halves, or the first row_lane_count lanes and the others.
 template <class Real, std::size_t Count>
@@ -144,6 +145,12 @@ struct SeveralRegisters {
     }
   }
 };
+
+#else
+
+/// Not there: what is written for it is not compiled.
+template <class Real, std::size_t Count>
+struct NumberRow;
 
 #endif
 

@@ -74,6 +74,11 @@ struct RippleFilterConfig {
          (order.with_direction ? 1U : 0U);
 }
 
+/// Pairs besides an order's first one.
+[[nodiscard]] constexpr std::size_t further_pairs_of(const RippleOrder& order) {
+  return pairs_of(order) - 1;
+}
+
 /// Pairs of coefficients in use.
 template <class Real, std::size_t MaxPairs>
 [[nodiscard]] constexpr std::size_t pair_count(const RippleFilterConfig<Real, MaxPairs>& config) {

@@ -29,7 +29,7 @@ inline void learn(const RippleFilterConfig<Real, MaxPairs>& config,
   if (!state.torque_known) {
     start_torque(config, state, intake.regressors, intake.rest_Nm);
   } else {
-    reading.status |= predict(config, state, intake.regressors, intake.rotation_rad, intake.moving);
+    let_torque_walk(config, state);
     const Innovation<Real, MaxPairs> found = update(
         config, state, intake.regressors, intake.rest_Nm - state.states_Nm[0], intake.moving);
     reading.innovation_Nm = found.innovation_Nm;
@@ -37,6 +37,10 @@ inline void learn(const RippleFilterConfig<Real, MaxPairs>& config,
     reading.status |= found.status;
     if (intake.moving) {
       track_scale(config, state, found.innovation_Nm, intake.rotation_rad);
+      if (state.learned_phase_known) {
+        reading.status |=
+            let_ripple_walk(config, state, intake.regressors.terms, intake.rotation_rad);
+      }
     }
   }
   finish_learning(state, intake, reading);

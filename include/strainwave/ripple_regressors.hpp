@@ -11,64 +11,89 @@
 
 namespace strainwave::detail {
 
-/// What the pairs of an order are multiplied by: 1, load, speed, direction.
+/// What further pairs may be multiplied by.
 template <class Real>
-struct Factors {
-  static constexpr std::size_t count = 4;
-  Real values[count] = {};
+struct RippleFactors {
+  Real load = Real(0);
+  Real speed = Real(0);
+  Real direction = Real(0);
 };
 
-[[nodiscard]] constexpr bool has_factor(const RippleOrder& order, std::size_t factor) {
-  switch (factor) {
-    case 0:
-      return true;
-    case 1:
-      return order.with_load;
-    case 2:
-      return order.with_speed;
-    default:
-      return order.with_direction;
-  }
-}
-
 template <class Real, std::size_t MaxPairs>
-constexpr void factors_now(const RippleFilterConfig<Real, MaxPairs>& config,
-                           const RippleFilterState<Real, MaxPairs>& state, Factors<Real>& factors) {
+[[nodiscard]] constexpr RippleFactors<Real> factors_now(
+    const RippleFilterConfig<Real, MaxPairs>& config,
+    const RippleFilterState<Real, MaxPairs>& state) {
   const Real speed_rad_s = absolute(state.speed_rad_s);
-  factors.values[0] = Real(1);
+  const Real load = state.load_Nm / config.rated_torque_Nm;
+  RippleFactors<Real> factors;
   // Growth with load flattens: linear for small loads, half of that at the rated torque.  A load
   // far from those at which the coefficients were learned is then not answered with a ripple that
   // no gear has.
-  const Real load = state.load_Nm / config.rated_torque_Nm;
-  factors.values[1] = load / (Real(1) + absolute(load));
-  factors.values[2] = speed_rad_s / config.reference_speed_rad_s;
+  factors.load = load / (Real(1) + absolute(load));
+  factors.speed = speed_rad_s / config.reference_speed_rad_s;
   // Through zero the direction changes over 1 rad/s either way, not from one sample to the next.
-  factors.values[3] = state.speed_rad_s / (speed_rad_s + Real(1));
+  factors.direction = state.speed_rad_s / (speed_rad_s + Real(1));
+  return factors;
 }
 
-/// Cosines and sines of all pairs at a phase, load and speed.
+/// Factors of an order's further pairs, in their order.
+template <class Real>
+[[nodiscard]] constexpr OrderTerms<Real> terms_of(const RippleOrder& order,
+                                                  const RippleFactors<Real>& factors) {
+  OrderTerms<Real> terms;
+  std::size_t count = 0;
+  if (order.with_load) {
+    terms.factors[count++] = factors.load;
+  }
+  if (order.with_speed) {
+    terms.factors[count++] = factors.speed;
+  }
+  if (order.with_direction) {
+    terms.factors[count] = factors.direction;
+  }
+  return terms;
+}
+
+/// Whether an order is the sum of the one before it and the first, as in 2, 4, 6.
+template <class Real, std::size_t MaxPairs>
+[[nodiscard]] constexpr bool continues_series(const RippleFilterConfig<Real, MaxPairs>& config,
+                                              std::size_t index) {
+  const Order& first = config.orders[0].order;
+  const Order& before = config.orders[index - 1].order;
+  const Order& order = config.orders[index].order;
+  return first.denominator == order.denominator && before.denominator == order.denominator &&
+         first.numerator + before.numerator == order.numerator;
+}
+
+/// Cosine and sine of the sum of two angles.
+template <class Real>
+[[nodiscard]] constexpr CosSin<Real> of_sum(const CosSin<Real>& a, const CosSin<Real>& b) {
+  return {a.cosine * b.cosine - a.sine * b.sine, a.sine * b.cosine + a.cosine * b.sine};
+}
+
+/// Each order's cosine and sine at a phase.  A series costs one cosine.
+template <class Real, std::size_t MaxPairs>
+constexpr void waves_at(const RippleFilterConfig<Real, MaxPairs>& config, Phase phase,
+                        CosSin<Real>* waves) {
+  for (std::size_t a = 0; a < config.order_count && a < MaxPairs; ++a) {
+    waves[a] = a > 0 && continues_series(config, a)
+                   ? of_sum(waves[a - 1], waves[0])
+                   : cos_sin_of_fraction<Real>(order_fraction(phase, config.orders[a].order));
+  }
+}
+
+/// Each order's wave and factors at a phase, load and speed.
 template <class Real, std::size_t MaxPairs>
 constexpr void regressors_at(const RippleFilterConfig<Real, MaxPairs>& config,
                              const RippleFilterState<Real, MaxPairs>& state, Phase phase,
                              Regressors<Real, MaxPairs>& sample) {
-  sample.order_count = config.order_count < MaxPairs ? config.order_count : MaxPairs;
-  sample.h[0] = Real(1);
-  Factors<Real> factors;
-  factors_now(config, state, factors);
-  std::size_t i = 1;
-  for (std::size_t a = 0; a < sample.order_count; ++a) {
-    const RippleOrder& order = config.orders[a];
-    const CosSin<Real> wave = cos_sin_of_fraction<Real>(order_fraction(phase, order.order));
-    sample.waves[a] = wave;
-    for (std::size_t f = 0; f < Factors<Real>::count; ++f) {
-      if (has_factor(order, f) && i + 1 < Regressors<Real, MaxPairs>::max_states) {
-        sample.h[i] = factors.values[f] * wave.cosine;
-        sample.h[i + 1] = factors.values[f] * wave.sine;
-        i += 2;
-      }
-    }
-  }
-  sample.state_count = i;
+  const RippleFactors<Real> factors = factors_now(config, state);
+  sample.state_count = 1;
+  waves_at(config, phase, sample.waves);
+  each_order(config, [&](std::size_t a, std::size_t b) {
+    sample.terms[a] = terms_of(config.orders[a], factors);
+    sample.state_count = 1 + b + 2 * pairs_of(config.orders[a]);
+  });
 }
 
 /// Ripple as predicted: of orders to be removed, and of those that are kept.
@@ -83,14 +108,17 @@ template <class Real, std::size_t MaxPairs>
     const RippleFilterConfig<Real, MaxPairs>& config,
     const RippleFilterState<Real, MaxPairs>& state, const Regressors<Real, MaxPairs>& sample) {
   PredictedRipple<Real> ripple;
-  std::size_t i = 1;
-  for (std::size_t a = 0; a < sample.order_count; ++a) {
-    Real sum = Real(0);
-    for (const std::size_t end = i + 2 * pairs_of(config.orders[a]); i < end; ++i) {
-      sum += sample.h[i] * state.states_Nm[i];
+  each_order(config, [&](std::size_t a, std::size_t b) {
+    const Real* const coefficients_Nm = state.states_Nm + 1 + b;
+    Real cosine_Nm = coefficients_Nm[0];
+    Real sine_Nm = coefficients_Nm[1];
+    for (std::size_t t = 0; t < further_pairs_of(config.orders[a]); ++t) {
+      cosine_Nm += sample.terms[a].factors[t] * coefficients_Nm[2 * t + 2];
+      sine_Nm += sample.terms[a].factors[t] * coefficients_Nm[2 * t + 3];
     }
-    (config.orders[a].keep ? ripple.kept_Nm : ripple.removed_Nm) += sum;
-  }
+    (config.orders[a].keep ? ripple.kept_Nm : ripple.removed_Nm) +=
+        sample.waves[a].cosine * cosine_Nm + sample.waves[a].sine * sine_Nm;
+  });
   return ripple;
 }
 

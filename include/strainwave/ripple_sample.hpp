@@ -59,6 +59,16 @@ constexpr Real share_of(Real interval_s, float time_constant_s) {
   return interval_s / (interval_s + static_cast<Real>(time_constant_s));
 }
 
+template <class Real, std::size_t MaxPairs>
+[[nodiscard]] constexpr Real highest_order(const RippleFilterConfig<Real, MaxPairs>& config) {
+  Real highest = Real(0);
+  for (std::size_t a = 0; a < config.order_count && a < MaxPairs; ++a) {
+    const Real order = to_real<Real>(config.orders[a].order);
+    highest = order > highest ? order : highest;
+  }
+  return highest;
+}
+
 /// Takes in a phase: rotation, speeds and history.
 template <class Real, std::size_t MaxPairs>
 constexpr Status take_ripple_phase(const RippleFilterConfig<Real, MaxPairs>& config,
@@ -86,12 +96,8 @@ constexpr Status take_ripple_phase(const RippleFilterConfig<Real, MaxPairs>& con
   if (config.angle_to_torque_delay_s > Real(0)) {
     remember(state.history, config.angle_to_torque_delay_s, interval_s, rotation_rad);
   }
-  for (std::size_t a = 0; a < config.order_count && a < MaxPairs; ++a) {
-    if (absolute(to_real<Real>(config.orders[a].order) * rotation_rad) > pi<Real>) {
-      return mask(StatusFlag::order_above_nyquist);
-    }
-  }
-  return 0;
+  const bool above = absolute(highest_order(config) * rotation_rad) > pi<Real>;
+  return above ? mask(StatusFlag::order_above_nyquist) : Status{0};
 }
 
 /// Angle by which the torque of this moment is ahead of the last phase: back by the delay, and on
@@ -252,9 +258,6 @@ constexpr void finish_learning(RippleFilterState<Real, MaxPairs>& state,
   }
   reading.torque_state_Nm = state.states_Nm[0] + intake.expected_torque_Nm;
   state.learned_phase = intake.phase;
-  for (std::size_t a = 0; a < intake.regressors.order_count; ++a) {
-    state.learned_waves[a] = intake.regressors.waves[a];
-  }
   const Real interval_s = state.time_since_update_s;
   state.time_since_update_s = Real(0);
   if (!state.learned_phase_known) {  // the first: what came before it was waiting

@@ -38,33 +38,42 @@ struct SmootherState {
 
 namespace detail {
 
-/// h with the rows of T and of kept orders left out.
+/// P h of the removed orders' coefficients, T first: what the smoothed ripple needs of P.
 template <class Real, std::size_t MaxPairs>
-constexpr void removed_regressors(const RippleFilterConfig<Real, MaxPairs>& config,
-                                  const Regressors<Real, MaxPairs>& sample, Real* removed) {
-  std::size_t i = 1;
-  for (std::size_t a = 0; a < sample.order_count; ++a) {
-    for (const std::size_t end = i + 2 * pairs_of(config.orders[a]); i < end; ++i) {
-      removed[i] = config.orders[a].keep ? Real(0) : sample.h[i];
+constexpr void covariance_with_removed(const RippleFilterConfig<Real, MaxPairs>& config,
+                                       RippleCovariance<Real, MaxPairs>& p,
+                                       const Regressors<Real, MaxPairs>& sample, Real* result) {
+  const std::size_t count = sample.state_count - 1;
+  SeenCovariance<Real, MaxPairs> seen;
+  follow(config, p, count, sample.terms);
+  enter_frame(config, p, sample.terms, sample.waves, seen.h);
+  each_order(config, [&](std::size_t a, std::size_t b) {
+    for (std::size_t i = b; i < b + 2 * pairs_of(config.orders[a]) && config.orders[a].keep; ++i) {
+      seen.h[i] = Real(0);
     }
+  });
+  project(p, count, seen.h, seen.ripple_row_Nm2);
+  result[0] = product_sum(count, seen.h, p.torque_row_Nm2);
+  leave_frame(config, p, seen.ripple_row_Nm2);
+  for (std::size_t j = 0; j < count; ++j) {
+    result[j + 1] = seen.ripple_row_Nm2[j];
   }
 }
 
-/// P h of the removed orders' coefficients, T first: what the smoothed ripple needs of P.
+/// What each state is multiplied by, T first.
 template <class Real, std::size_t MaxPairs>
-constexpr void covariance_with_removed(const RippleCovariance<Real, MaxPairs>& p, std::size_t count,
-                                       const Real* removed, Real* result) {
-  Real projected[RippleCovariance<Real, MaxPairs>::max_coefficients] = {};
-  project(p, count, removed, projected);
-  for (std::size_t j = 0; j < count; ++j) {
-    const Real part = p.variances_Nm2[j] * projected[j];
-    const Real* const column = column_of(p, j);
-    result[0] += p.torque_row[j] * part;
-    result[j + 1] += part;
-    for (std::size_t i = j + 1; i < count; ++i) {
-      result[i + 1] += column[i - j - 1] * part;
+constexpr void regressors_of(const RippleFilterConfig<Real, MaxPairs>& config,
+                             const Regressors<Real, MaxPairs>& sample, Real* h) {
+  h[0] = Real(1);
+  each_order(config, [&](std::size_t a, std::size_t b) {
+    Real* const its = h + 1 + b;
+    its[0] = sample.waves[a].cosine;
+    its[1] = sample.waves[a].sine;
+    for (std::size_t t = 0; t < further_pairs_of(config.orders[a]); ++t) {
+      its[2 * t + 2] = sample.terms[a].factors[t] * its[0];
+      its[2 * t + 3] = sample.terms[a].factors[t] * its[1];
     }
-  }
+  });
 }
 
 /// Update with one sample of a moving motor, leaving its trace.
@@ -90,6 +99,9 @@ constexpr void learn_with_trace(const RippleFilterConfig<Real, MaxPairs>& config
   }
   trace.innovation_per_variance = innovation_Nm / (found.variance_Nm2 + found.jump_variance_Nm2);
   track_scale(config, state, innovation_Nm, intake.rotation_rad);
+  if (state.learned_phase_known) {
+    trace.status |= let_ripple_walk(config, state, intake.regressors.terms, intake.rotation_rad);
+  }
 }
 
 }  // namespace detail
@@ -111,16 +123,11 @@ inline RippleReading<Real> step_forward(const RippleFilterConfig<Real, MaxPairs>
   trace.holds = intake.held_or_late || !intake.torque_usable;
   const bool learns = intake.learnable && intake.moving;
   if (learns) {
-    trace.status |= detail::predict(config, state, intake.regressors, intake.rotation_rad, true);
+    detail::let_torque_walk(config, state);
   }
-  const std::size_t count = intake.regressors.state_count;
-  Real removed[1 + 2 * MaxPairs] = {};
-  detail::removed_regressors(config, intake.regressors, removed);
-  detail::covariance_with_removed(state.covariance, count - 1, removed + 1,
+  detail::covariance_with_removed(config, state.covariance, intake.regressors,
                                   trace.covariance_with_ripple);
-  for (std::size_t i = 0; i < count; ++i) {
-    trace.h[i] = intake.regressors.h[i];
-  }
+  detail::regressors_of(config, intake.regressors, trace.h);
   if (learns) {
     detail::learn_with_trace(config, state, intake, trace);
   } else if (intake.learnable) {

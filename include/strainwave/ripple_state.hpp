@@ -24,8 +24,6 @@ struct RippleFilterState {
 
   Real states_Nm[max_states] = {};  ///< T, then cosine and sine of each pair
   RippleCovariance<Real, MaxPairs> covariance = {};
-  Real waiting_Nm2[MaxPairs] = {};  ///< process noise that a pair has gained and not yet been given
-  std::size_t next_pair = 0;        ///< that is given its process noise; one a sample
   Real innovation_scale_Nm = Real(0);  ///< exceeded by three innovations in ten while moving
   bool torque_known = false;           ///< a first torque has been taken in
 
@@ -37,8 +35,7 @@ struct RippleFilterState {
   Real smoothed_speed_rad_s = Real(0);  ///< smoothed over 50 ms: is the motor moving?
   Real load_Nm = Real(0);               ///< torque without ripple, low-passed at 15 Hz
 
-  Phase learned_phase = {};                   ///< compensated phase of the last update
-  CosSin<Real> learned_waves[MaxPairs] = {};  ///< cosine and sine of each order there
+  Phase learned_phase = {};  ///< compensated phase of the last update
   bool learned_phase_known = false;
   Real time_since_update_s = Real(0);
   Real typical_interval_s = Real(0);  ///< from update to update, smoothed over about 64
@@ -62,27 +59,21 @@ inline constexpr float longest_torque_walk_s = 0.1F;
 /// An interval of so many typical ones is a gap.
 inline constexpr float least_gap = 2.0F;
 
-/// What one sample looks like to the states: y - T_exp = x[0] + sum over h[i] x[i], h[0] = 1.
-/// Filled as far as the counts say, and read no further: clearing the rest costs a microcontroller
-/// more than an order does.
+/// What one sample looks like to the states: of each order, cosine and sine at its angle, and what
+/// its further pairs are multiplied by.  Filled as far as there are orders, and read no further:
+/// clearing the rest costs a microcontroller more than an order does.
 template <class Real, std::size_t MaxPairs>
 // NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init)
 struct Regressors {
-  static constexpr std::size_t max_states = 1 + 2 * MaxPairs;
-
-  std::size_t order_count = 0;
   std::size_t state_count = 1;
-  CosSin<Real> waves[MaxPairs];  ///< of each order
-  Real h[max_states];
+  OrderTerms<Real> terms[MaxPairs];
+  CosSin<Real> waves[MaxPairs];
 };
 
 template <class Real, std::size_t MaxPairs>
 constexpr void set_variances(const RippleFilterConfig<Real, MaxPairs>& config,
                              RippleFilterState<Real, MaxPairs>& state) {
   set_uncorrelated(state.covariance, config.initial_amplitude_Nm * config.initial_amplitude_Nm);
-  for (Real& each : state.waiting_Nm2) {
-    each = Real(0);
-  }
   state.torque_known = false;
 }
 
@@ -94,105 +85,115 @@ constexpr void start_torque(const RippleFilterConfig<Real, MaxPairs>& config,
                             const Regressors<Real, MaxPairs>& sample, Real torque_Nm) {
   const std::size_t count = sample.state_count - 1;
   RippleCovariance<Real, MaxPairs>& p = state.covariance;
-  project(p, count, sample.h + 1, p.torque_row);
-  for (std::size_t j = 0; j < count; ++j) {
-    p.torque_row[j] = -p.torque_row[j];
+  for (Real& each : p.torque_row_Nm2) {
+    each = Real(0);
   }
-  p.torque_variance_Nm2 = config.torque_noise_Nm * config.torque_noise_Nm;
+  SeenCovariance<Real, MaxPairs> seen;
+  follow(config, p, count, sample.terms);
+  enter_frame(config, p, sample.terms, sample.waves, seen.h);
+  see(p, count, seen);
+  Real row_Nm2[RippleCovariance<Real, MaxPairs>::row_length];  // NOLINT(*-member-init)
+  measure_torque(p, count, seen, config.torque_noise_Nm * config.torque_noise_Nm, Real(0), row_Nm2);
   state.states_Nm[0] = torque_Nm;
   state.torque_known = true;
 }
 
-/// Variance that one order's coefficients gain with a rotation, so that the memory is n turns at
-/// every speed and order,
-///     Q = 2 R_eff (rotation / (2 pi n))^2,  R_eff = R + q_T dt / |wave - last wave|^2.
-/// R_eff is the noise and what true torque has at the order's own frequency.  Over a gap it is that
-/// of the typical intervals in it: a long way without a sample is not a way of great change.
+/// What the process noise of all orders has in common: the way since the last update, as a share of
+/// the memory, and the interval.  Over a gap it is that of the typical intervals in it: a long way
+/// without a sample is not a way of great change.
+template <class Real>
+struct Way {
+  Real noise_Nm2 = Real(0);             ///< 2 R (rotation / (2 pi n))^2
+  Real walk_Nm2 = Real(0);              ///< 2 q_T dt (rotation / (2 pi n))^2
+  Real walk_per_square_Nm2 = Real(0);   ///< 2 q_T dt / (2 pi n)^2
+  Real rotation_square_rad2 = Real(0);  ///< of one typical interval
+};
+
 template <class Real, std::size_t MaxPairs>
-[[nodiscard]] constexpr Real gained_variance(const RippleFilterConfig<Real, MaxPairs>& config,
-                                             const RippleFilterState<Real, MaxPairs>& state,
-                                             const Regressors<Real, MaxPairs>& sample,
-                                             std::size_t order, Real rotation_rad) {
-  const Real walk_Nm2_per_s = config.torque_walk_Nm_per_sqrt_s * config.torque_walk_Nm_per_sqrt_s;
+[[nodiscard]] constexpr Way<Real> way_of(const RippleFilterConfig<Real, MaxPairs>& config,
+                                         const RippleFilterState<Real, MaxPairs>& state,
+                                         Real rotation_rad) {
+  const Real per_memory_rad = Real(1) / (two_pi<Real> * config.memory_turns);
   Real interval_s = state.time_since_update_s;
   Real intervals = Real(1);
-  const Real cosine = sample.waves[order].cosine - state.learned_waves[order].cosine;
-  const Real sine = sample.waves[order].sine - state.learned_waves[order].sine;
-  Real chord = cosine * cosine + sine * sine;
-  Real turned_rad = to_real<Real>(config.orders[order].order) * rotation_rad;
+  Way<Real> way;
+  way.rotation_square_rad2 = rotation_rad * rotation_rad;
+  Real share = way.rotation_square_rad2 * (per_memory_rad * per_memory_rad);
   if (state.typical_interval_s > Real(0) &&
       interval_s > static_cast<Real>(least_gap) * state.typical_interval_s) {
     intervals = interval_s / state.typical_interval_s;
     interval_s = state.typical_interval_s;
-    turned_rad /= intervals;
-    chord = turned_rad * turned_rad;
+    way.rotation_square_rad2 /= intervals * intervals;
+    share /= intervals;
   }
-  if (absolute(turned_rad) > pi<Real> || chord > Real(4)) {
-    chord = Real(4);  // beyond half a cycle the chord says nothing; 4 is what white noise has
-  }
-  Real share = rotation_rad / (two_pi<Real> * config.memory_turns);
-  share = share * share / intervals;
   share = share < Real(1) ? share : Real(1);
-  const Real noise_Nm2 = config.torque_noise_Nm * config.torque_noise_Nm;
-  // No rotation, no noise: share is 0 with it, and the quotient would be 0 / 0.
-  return chord > Real(0) ? Real(2) * share * (noise_Nm2 + walk_Nm2_per_s * interval_s / chord)
-                         : Real(0);
+  const Real walk_Nm2 =
+      config.torque_walk_Nm_per_sqrt_s * config.torque_walk_Nm_per_sqrt_s * interval_s;
+  way.noise_Nm2 = Real(2) * (config.torque_noise_Nm * config.torque_noise_Nm) * share;
+  way.walk_Nm2 = Real(2) * walk_Nm2 * share;
+  // No rotation, no noise.
+  way.walk_per_square_Nm2 = share > Real(0)
+                                ? Real(2) * walk_Nm2 * intervals * (per_memory_rad * per_memory_rad)
+                                : Real(0);
+  return way;
 }
 
-/// Gives one coefficient its process noise.  Returns whether its variance had to be limited: that
-/// acts where a pair is hardly seen, as a load pair at constant load; before the noise, so that a
-/// filter which has seen nothing yet is not said to be limited.
-template <class Real, std::size_t MaxPairs, class Count>
-inline bool give_noise(const RippleFilterConfig<Real, MaxPairs>& config,
-                       RippleCovariance<Real, MaxPairs>& p, Count count, std::size_t i,
-                       Real noise_Nm2) {
-  const Real limit = config.initial_amplitude_Nm * config.initial_amplitude_Nm;
-  const Real variance = variance_of(p, i);
-  const bool limited = variance > limit;
-  if (limited) {
-    scale_deviation(p, count, i, square_root(limit / variance));
-  }
-  add_variance(p, count, i, noise_Nm2);
-  return limited;
-}
-
-/// Process noise of the torque for an interval, and of the coefficients for a rotation.  An order's
-/// is shared among its pairs, so that further terms do not shorten its memory.  One pair in turn is
-/// given what it has gained since its last turn: the sum is the same, and a sample costs one change
-/// of the factors and not one for each coefficient.
+/// Variance that one order's ripple gains with a rotation, so that the memory is n turns at every
+/// speed and order,
+///     Q = 2 R_eff (rotation / (2 pi n))^2,  R_eff = R + q_T dt / (2 sin(x / 2))^2,
+/// x the order times the rotation.  R_eff is the noise and what true torque has at the order's own
+/// frequency; beyond half a cycle, where x says nothing, that of white noise, R + q_T dt / 4.
 template <class Real, std::size_t MaxPairs>
-inline Status predict(const RippleFilterConfig<Real, MaxPairs>& config,
-                      RippleFilterState<Real, MaxPairs>& state,
-                      const Regressors<Real, MaxPairs>& sample, Real rotation_rad, bool moving) {
+[[nodiscard]] constexpr Real gained_variance(const RippleFilterConfig<Real, MaxPairs>& config,
+                                             const Way<Real>& way, std::size_t index) {
+  const Real order = to_real<Real>(config.orders[index].order);
+  const Real square = (order * order) * way.rotation_square_rad2;
+  if (square > pi<Real> * pi<Real>) {
+    return way.noise_Nm2 + Real(0.25) * way.walk_Nm2;
+  }
+  // (x / (2 sin(x / 2)))^2 to 6e-6 of itself up to pi.
+  const Real bent =
+      Real(1) +
+      square *
+          (Real(8.33619094e-02) +
+           square * (Real(4.12392359e-03) +
+                     square * (Real(1.85362645e-04) +
+                               square * (Real(1.88781908e-06) + square * Real(4.99873192e-07)))));
+  return way.noise_Nm2 + (Real(1) / (order * order)) * way.walk_per_square_Nm2 * bent;
+}
+
+/// Process noise of the torque for an interval.
+template <class Real, std::size_t MaxPairs>
+inline void let_torque_walk(const RippleFilterConfig<Real, MaxPairs>& config,
+                            RippleFilterState<Real, MaxPairs>& state) {
   const Real longest_s = static_cast<Real>(longest_torque_walk_s);
   state.covariance.torque_variance_Nm2 +=
       config.torque_walk_Nm_per_sqrt_s * config.torque_walk_Nm_per_sqrt_s *
       (state.time_since_update_s < longest_s ? state.time_since_update_s : longest_s);
-  if (!moving || !state.learned_phase_known) {
-    return 0;
-  }
-  std::size_t pair = 0;
-  for (std::size_t a = 0; a < sample.order_count; ++a) {
-    const Real gained = gained_variance(config, state, sample, a, rotation_rad);
-    const std::size_t its_end = pair + pairs_of(config.orders[a]);
-    const std::size_t end = its_end < MaxPairs ? its_end : MaxPairs;
-    Real weight = Real(0);
-    for (std::size_t i = 2 * pair; i < 2 * end; ++i) {
-      weight += sample.h[i + 1] * sample.h[i + 1];
+}
+
+/// Process noise of the coefficients for a rotation.  An order's is shared among its pairs, so that
+/// further terms do not shorten its memory.  Given after the update: single numbers written among
+/// rows that are read whole at once would be waited for.
+template <class Real, std::size_t MaxPairs>
+inline Status let_ripple_walk(const RippleFilterConfig<Real, MaxPairs>& config,
+                              RippleFilterState<Real, MaxPairs>& state,
+                              const OrderTerms<Real>* terms, Real rotation_rad) {
+  const Real limit_Nm2 = config.initial_amplitude_Nm * config.initial_amplitude_Nm;
+  const Way<Real> way = way_of(config, state, rotation_rad);
+  bool limited = false;
+  each_order(config, [&](std::size_t a, std::size_t b) {
+    const std::size_t its_terms = further_pairs_of(config.orders[a]);
+    Real each_Nm2 = gained_variance(config, way, a);
+    if (its_terms > 0) {
+      Real weight = Real(1);
+      for (std::size_t t = 0; t < its_terms; ++t) {
+        weight += terms[a].factors[t] * terms[a].factors[t];
+      }
+      each_Nm2 /= weight;
     }
-    for (const Real each = gained / weight; pair < end; ++pair) {
-      state.waiting_Nm2[pair] += each;
-    }
-  }
-  state.next_pair = state.next_pair + 1 < pair ? state.next_pair + 1 : 0;
-  const std::size_t i = 2 * state.next_pair;
-  const Real noise_Nm2 = state.waiting_Nm2[state.next_pair];
-  const bool limited = with_count<2 * MaxPairs>(sample.state_count - 1, [&](auto count) {
-    const bool first = give_noise(config, state.covariance, count, i, noise_Nm2);
-    const bool second = give_noise(config, state.covariance, count, i + 1, noise_Nm2);
-    return first || second;
+    limited = add_noise(state.covariance, a, b, its_terms, each_Nm2, limit_Nm2) || limited;
   });
-  state.waiting_Nm2[state.next_pair] = Real(0);
   return limited ? mask(StatusFlag::variance_limited) : Status{0};
 }
 
@@ -238,19 +239,16 @@ constexpr Innovation<Real, MaxPairs> update_of(const RippleFilterConfig<Real, Ma
                                                Count count, Real innovation_Nm, bool moving) {
   RippleCovariance<Real, MaxPairs>& p = state.covariance;
   const Real noise_Nm2 = config.torque_noise_Nm * config.torque_noise_Nm;
-  Real projected[RippleCovariance<Real, MaxPairs>::max_coefficients];
-  project(p, count, sample.h + 1, projected);
-  Real variance_Nm2 = noise_Nm2 + p.torque_variance_Nm2;
-  Real torque_covariance_Nm2 = p.torque_variance_Nm2;
-  Real ripple_variance_Nm2 = Real(0);
-  for (std::size_t j = 0; j < count; ++j) {
-    const Real seen = projected[j] + p.torque_row[j];
-    variance_Nm2 += p.variances_Nm2[j] * seen * seen;
-    torque_covariance_Nm2 += p.variances_Nm2[j] * p.torque_row[j] * seen;
-    ripple_variance_Nm2 += p.variances_Nm2[j] * projected[j] * projected[j];
-  }
+  SeenCovariance<Real, MaxPairs> seen;
+  follow(config, p, count, sample.terms);
+  enter_frame(config, p, sample.terms, sample.waves, seen.h);
+  see(p, count, seen);
+  const Real shared_with_torque_Nm2 = p.torque_variance_Nm2 + seen.shared_Nm2;
+  Real variance_Nm2 =
+      noise_Nm2 + seen.ripple_variance_Nm2 + seen.shared_Nm2 + shared_with_torque_Nm2;
   Innovation<Real, MaxPairs> result;
-  if (!is_finite(variance_Nm2) || !(variance_Nm2 > Real(0))) {
+  if (!is_finite(variance_Nm2) || !(variance_Nm2 > Real(0)) ||
+      !(seen.ripple_variance_Nm2 > -noise_Nm2)) {
     set_variances(config, state);
     result.status = mask(StatusFlag::covariance_reset);
     return result;
@@ -259,22 +257,23 @@ constexpr Innovation<Real, MaxPairs> update_of(const RippleFilterConfig<Real, Ma
   result.variance_Nm2 = variance_Nm2;
   if (moving) {
     result.jump_variance_Nm2 =
-        jump_variance(state, innovation_Nm, variance_Nm2, ripple_variance_Nm2);
-    p.torque_variance_Nm2 += result.jump_variance_Nm2;
-    (void)measure(p, count, projected, noise_Nm2, result.gains);
-    for (std::size_t i = 0; i <= count; ++i) {
-      state.states_Nm[i] += result.gains[i] * innovation_Nm;
-    }
+        jump_variance(state, innovation_Nm, variance_Nm2, seen.ripple_variance_Nm2);
+    variance_Nm2 += result.jump_variance_Nm2;
+  }
+  const Real per_variance = Real(1) / variance_Nm2;
+  result.gains[0] = (shared_with_torque_Nm2 + result.jump_variance_Nm2) * per_variance;
+  state.states_Nm[0] += result.gains[0] * innovation_Nm;
+  Real row_Nm2[RippleCovariance<Real, MaxPairs>::row_length];  // NOLINT(*-member-init)
+  measure_torque(p, count, seen, noise_Nm2, per_variance, row_Nm2);
+  if (!moving) {
     return result;
   }
-  const Real gain = torque_covariance_Nm2 / variance_Nm2;
-  result.gains[0] = gain;
-  state.states_Nm[0] += gain * innovation_Nm;
-  for (std::size_t j = 0; j < count; ++j) {
-    p.torque_row[j] -= gain * (projected[j] + p.torque_row[j]);
-  }
-  const Real left = Real(1) - gain;
-  p.torque_variance_Nm2 = left * left * p.torque_variance_Nm2 + gain * gain * noise_Nm2;
+  measure_coefficients(p, count, row_Nm2, square_root(per_variance));
+  leave_frame(config, p, row_Nm2);
+  repeat(count, [&](auto j) {
+    result.gains[j + 1] = row_Nm2[j] * per_variance;
+    state.states_Nm[j + 1] += result.gains[j + 1] * innovation_Nm;
+  });
   return result;
 }
 

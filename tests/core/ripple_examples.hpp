@@ -54,45 +54,48 @@ strainwave::RippleSample<Real> ripple_sample(double torque_Nm, double angle_rad,
   return sample;
 }
 
-/// Smallest pivot of P as it is factored; -1 where one is no positive number.
+/// Smallest pivot of P, coefficients first and T last, factored in double; -1 where one is no
+/// positive number.
 template <class Real, std::size_t MaxPairs>
 double smallest_pivot(const strainwave::RippleFilterConfig<Real, MaxPairs>& config,
                       const strainwave::RippleFilterState<Real, MaxPairs>& state) {
-  double smallest = static_cast<double>(state.covariance.torque_variance_Nm2);
-  for (std::size_t j = 0; j < 2 * strainwave::pair_count(config); ++j) {
-    const auto pivot = static_cast<double>(state.covariance.variances_Nm2[j]);
-    smallest = pivot < smallest || std::isnan(pivot) ? pivot : smallest;
+  const auto& p = state.covariance;
+  const std::size_t count = 2 * strainwave::pair_count(config);
+  double rest[1 + 2 * MaxPairs][1 + 2 * MaxPairs] = {};
+  for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t j = 0; j < count; ++j) {
+      rest[i][j] = static_cast<double>(strainwave::detail::element_of(p, i, j));
+    }
+    rest[i][count] = rest[count][i] = static_cast<double>(p.torque_row_Nm2[i]);
   }
-  return smallest > 0.0 && std::isfinite(smallest) ? smallest : -1.0;
+  rest[count][count] = static_cast<double>(p.torque_variance_Nm2);
+  double smallest = INFINITY;
+  for (std::size_t k = 0; k <= count; ++k) {
+    if (!(rest[k][k] > 0.0) || !std::isfinite(rest[k][k])) {
+      return -1.0;
+    }
+    smallest = std::fmin(smallest, rest[k][k]);
+    for (std::size_t i = k + 1; i <= count; ++i) {
+      for (std::size_t j = k + 1; j <= count; ++j) {
+        rest[i][j] -= rest[i][k] * rest[k][j] / rest[k][k];
+      }
+    }
+  }
+  return smallest;
 }
 
-/// Factors of a positive definite matrix; index 0 of `dense` is T, the others are coefficients.
+/// A covariance with these elements; index 0 of `dense` is T, the others are coefficients.
 template <class Real, std::size_t MaxPairs, class Dense>
-strainwave::RippleCovariance<Real, MaxPairs> factored(const Dense& dense, std::size_t states) {
-  constexpr std::size_t largest = 1 + 2 * MaxPairs;
-  const std::size_t count = states - 1;
-  const auto dense_index = [count](std::size_t i) { return i == count ? 0 : i + 1; };
-  double lower[largest][largest] = {};
-  double pivots[largest] = {};
-  for (std::size_t j = 0; j <= count; ++j) {
-    for (std::size_t i = j; i <= count; ++i) {
-      double rest = dense[dense_index(i)][dense_index(j)];
-      for (std::size_t k = 0; k < j; ++k) {
-        rest -= lower[i][k] * lower[j][k] * pivots[k];
-      }
-      pivots[j] = i == j ? rest : pivots[j];
-      lower[i][j] = rest / pivots[j];
-    }
-  }
+strainwave::RippleCovariance<Real, MaxPairs> covariance_like(const Dense& dense,
+                                                             std::size_t states) {
   strainwave::RippleCovariance<Real, MaxPairs> p;
-  for (std::size_t j = 0; j < count; ++j) {
-    p.variances_Nm2[j] = static_cast<Real>(pivots[j]);
-    p.torque_row[j] = static_cast<Real>(lower[count][j]);
-    for (std::size_t i = j + 1; i < count; ++i) {
-      strainwave::detail::column_of(p, j)[i - j - 1] = static_cast<Real>(lower[i][j]);
+  p.torque_variance_Nm2 = static_cast<Real>(dense[0][0]);
+  for (std::size_t i = 1; i < states; ++i) {
+    p.torque_row_Nm2[i - 1] = static_cast<Real>(dense[0][i]);
+    for (std::size_t j = 1; j < states; ++j) {
+      strainwave::detail::set_element(p, i - 1, j - 1, static_cast<Real>(dense[i][j]));
     }
   }
-  p.torque_variance_Nm2 = static_cast<Real>(pivots[count]);
   return p;
 }
 

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <cstdio>
 
+#include "ripple_examples.hpp"
 #include "strainwave/ripple_filter.hpp"
 
 namespace {
@@ -96,17 +97,6 @@ class Noise {
   std::uint64_t state_ = 0x9E3779B97F4A7C15U;
 };
 
-/// Smallest pivot of P as it is factored; -1 where one is no positive number.
-template <class Real>
-double smallest_pivot(std::size_t count, const State<Real>& state) {
-  auto smallest = static_cast<double>(state.covariance.torque_variance_Nm2);
-  for (std::size_t j = 0; j + 1 < count; ++j) {
-    const auto pivot = static_cast<double>(state.covariance.variances_Nm2[j]);
-    smallest = pivot < smallest || std::isnan(pivot) ? pivot : smallest;
-  }
-  return smallest > 0.0 && std::isfinite(smallest) ? smallest : -1.0;
-}
-
 struct Figures {
   double rms_Nm = 0.0;  ///< of torque in float less torque in double
   double part_rms_Nm[parts] = {};
@@ -169,15 +159,15 @@ Figures run(const Config<double>& config, std::uint64_t sample_count) {
     }
     angle_rad += day.speed_rad_s * sample_period_s;
     if (k % 997 == 0) {
-      const double pivot_Nm2 = smallest_pivot(states, state);
+      const double pivot_Nm2 = smallest_pivot(config_float, state);
       figures.not_positive += pivot_Nm2 > 0.0 ? 0U : 1U;
       figures.smallest_pivot_Nm2 = std::min(figures.smallest_pivot_Nm2, pivot_Nm2);
       figures.smallest_pivot_double_Nm2 =
-          std::min(figures.smallest_pivot_double_Nm2, smallest_pivot(states, reference));
+          std::min(figures.smallest_pivot_double_Nm2, smallest_pivot(config, reference));
       for (std::size_t i = 1; i < states; ++i) {
-        figures.largest_variance_Nm2 =
-            std::max(figures.largest_variance_Nm2,
-                     static_cast<double>(strainwave::detail::variance_of(state.covariance, i - 1)));
+        figures.largest_variance_Nm2 = std::max(
+            figures.largest_variance_Nm2,
+            static_cast<double>(strainwave::detail::element_of(state.covariance, i - 1, i - 1)));
       }
     }
   }

@@ -188,7 +188,7 @@ TYPED_TEST(RippleConfigOf, WhatPassesItsCheckStaysFinite) {
           for (std::size_t i = 0; i < states; ++i) {
             for (std::size_t j = 0; j <= i; ++j) {
               finite = finite && strainwave::is_finite(strainwave::detail::covariance_of(
-                                     state.covariance, states - 1, i, j));
+                                     config, state.covariance, states - 1, i, j));
             }
           }
           EXPECT_TRUE(finite) << "noise " << noise << " amplitude " << amplitude << " walk " << walk

@@ -1,8 +1,10 @@
-// The factored covariance, one operation at a time, against matrices written out.
+// The covariance in its frame, one operation at a time, against matrices of the coefficients
+// themselves, written out.
 #include "strainwave/ripple_covariance.hpp"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -12,7 +14,6 @@
 
 namespace {
 
-using strainwave::RippleCovariance;
 using Matrix = std::vector<std::vector<double>>;
 using Vector = std::vector<double>;
 
@@ -25,8 +26,23 @@ TYPED_TEST_SUITE(RippleCovarianceOf, Precisions);
 template <class Real>
 constexpr double tolerance = sizeof(Real) == 4 ? 1e-5 : 1e-12;
 
-constexpr std::size_t pairs[] = {1, 2, 3, 5, 7};
 constexpr std::uint64_t seeds[] = {1, 2, 3};
+constexpr std::size_t structures = 5;
+
+/// Orders with no further pairs and with up to three.
+template <class Real, std::size_t MaxPairs>
+strainwave::RippleFilterConfig<Real, MaxPairs> structure(std::size_t index) {
+  strainwave::RippleFilterConfig<Real, MaxPairs> config;
+  config.order_count = index < 2 ? 1 : index < 4 ? 2 : 3;
+  for (std::uint32_t a = 0; a < config.order_count; ++a) {
+    config.orders[a].order = {2 * (a + 1), 1};
+  }
+  config.orders[0].with_load = index > 0;
+  config.orders[0].with_speed = index > 2;
+  config.orders[0].with_direction = index == 3;
+  config.orders[1].with_speed = index == 2 || index == 4;
+  return config;
+}
 
 /// B B' + 0.05, with elements of B from -0.5 to 0.5; 0 is T.
 Matrix random_covariance(std::size_t states, Random& random) {
@@ -48,40 +64,104 @@ Matrix random_covariance(std::size_t states, Random& random) {
   return p;
 }
 
-/// T's is 1.
-Vector random_regressors(std::size_t states, Random& random) {
-  Vector h(states, 1.0);
-  for (std::size_t i = 1; i < states; ++i) {
-    h[i] = random.uniform();
-  }
-  return h;
-}
-
-/// Factors with room for seven pairs, used by less, and the same as a matrix.
+/// A covariance in a frame of its own, and `dense`, that of T and the coefficients themselves.
 template <class Real>
 struct Example {
   static constexpr std::size_t max_pairs = 7;
+  using Terms = strainwave::OrderTerms<Real>;
 
+  strainwave::RippleFilterConfig<Real, max_pairs> config;
   std::size_t states;
   std::size_t count;
   Random random;
+  strainwave::RippleCovariance<Real, max_pairs> p;
   Matrix dense;
-  Vector h;
-  RippleCovariance<Real, max_pairs> p;
+  Terms terms[max_pairs] = {};
+  strainwave::CosSin<Real> waves[max_pairs] = {};
 
-  Example(std::size_t pair_count, std::uint64_t seed)
-      : states(1 + 2 * pair_count),
-        count(2 * pair_count),
-        random(100 * pair_count + seed),
-        dense(random_covariance(states, random)),
-        h(random_regressors(states, random)),
-        p(factored<Real, max_pairs>(dense, states)) {}
+  Example(std::size_t index, std::uint64_t seed)
+      : config(structure<Real, max_pairs>(index)),
+        states(1 + 2 * strainwave::pair_count(config)),
+        count(states - 1),
+        random(100 * index + seed) {
+    const Matrix framed = random_covariance(states, random);
+    p = covariance_like<Real, max_pairs>(framed, states);
+    for (std::size_t a = 0; a < config.order_count; ++a) {
+      for (Real& each : p.frames[a]) {
+        each = static_cast<Real>(random.uniform());
+      }
+    }
+    const Matrix back = from_frame();
+    dense = Matrix(states, Vector(states));
+    for (std::size_t i = 0; i < states; ++i) {
+      for (std::size_t j = 0; j < states; ++j) {
+        for (std::size_t k = 0; k < states; ++k) {
+          for (std::size_t m = 0; m < states; ++m) {
+            dense[i][j] += back[i][k] * framed[k][m] * back[j][m];
+          }
+        }
+      }
+    }
+    look(0.5);
+  }
+
+  /// New factors so far from the frame's, and a new angle.
+  void look(double distance) {
+    for (std::size_t a = 0; a < config.order_count; ++a) {
+      for (std::size_t t = 0; t < 3; ++t) {
+        terms[a].factors[t] = p.frames[a][t] + static_cast<Real>(distance * random.uniform());
+      }
+      const double angle_rad = 3.0 * random.uniform();
+      waves[a] = {static_cast<Real>(std::cos(angle_rad)), static_cast<Real>(std::sin(angle_rad))};
+    }
+  }
+
+  /// Calls with each order's index, its first state and how many further pairs it has.
+  template <class Call>
+  void each(const Call& call) const {
+    std::size_t first = 1;
+    for (std::size_t a = 0; a < config.order_count; ++a) {
+      const std::size_t further = strainwave::pairs_of(config.orders[a]) - 1;
+      call(a, first, further);
+      first += 2 * (1 + further);
+    }
+  }
+
+  /// Coefficients from what the frame describes: a first pair is the order's ripple less what the
+  /// further pairs make of it.
+  [[nodiscard]] Matrix from_frame() const {
+    Matrix back(states, Vector(states));
+    for (std::size_t i = 0; i < states; ++i) {
+      back[i][i] = 1.0;
+    }
+    each([&](std::size_t a, std::size_t first, std::size_t further) {
+      for (std::size_t t = 0; t < further; ++t) {
+        for (std::size_t side = 0; side < 2; ++side) {
+          back[first + side][first + 2 * (t + 1) + side] = -static_cast<double>(p.frames[a][t]);
+        }
+      }
+    });
+    return back;
+  }
+
+  /// What T and the coefficients themselves are multiplied by.
+  [[nodiscard]] Vector regressors() const {
+    Vector h(states, 1.0);
+    each([&](std::size_t a, std::size_t first, std::size_t further) {
+      for (std::size_t t = 0; t <= further; ++t) {
+        const double factor = t == 0 ? 1.0 : static_cast<double>(terms[a].factors[t - 1]);
+        h[first + 2 * t] = factor * static_cast<double>(waves[a].cosine);
+        h[first + 2 * t + 1] = factor * static_cast<double>(waves[a].sine);
+      }
+    });
+    return h;
+  }
 
   [[nodiscard]] double element(std::size_t i, std::size_t j) const {
-    return static_cast<double>(strainwave::detail::covariance_of(p, count, i, j));
+    return static_cast<double>(strainwave::detail::covariance_of(config, p, count, i, j));
   }
   void expect_dense(const char* what) const {
-    double largest = 0.0;
+    double largest = 1.0;
     double worst = 0.0;
     for (std::size_t i = 0; i < states; ++i) {
       for (std::size_t j = 0; j < states; ++j) {
@@ -89,34 +169,33 @@ struct Example {
         worst = std::fmax(worst, std::fabs(element(i, j) - dense[i][j]));
       }
     }
-    EXPECT_LT(worst, tolerance<Real> * std::fmax(largest, 1.0)) << what << ", " << states;
+    EXPECT_LT(worst, tolerance<Real> * largest) << what << ", " << states;
+    for (std::size_t i = 0; i < count; ++i) {
+      for (std::size_t j = 0; j < i; ++j) {
+        EXPECT_EQ(strainwave::detail::element_of(p, i, j), strainwave::detail::element_of(p, j, i));
+      }
+    }
   }
 };
 
-/// Every operation for each size and seed.
+/// Every operation for each structure and seed.
 template <class Real, class Check>
 void for_examples(const Check& check) {
-  for (const std::size_t pair_count : pairs) {
+  for (std::size_t index = 0; index < structures; ++index) {
     for (const std::uint64_t seed : seeds) {
-      Example<Real> example(pair_count, seed);
+      Example<Real> example(index, seed);
       check(example);
     }
   }
 }
 
-TYPED_TEST(RippleCovarianceOf, ElementsAreThoseOfLDL) {
-  for_examples<TypeParam>([](Example<TypeParam>& its) {
-    its.expect_dense("elements");
-    for (std::size_t i = 0; i < its.count; ++i) {
-      EXPECT_NEAR(static_cast<double>(strainwave::detail::variance_of(its.p, i)),
-                  its.dense[i + 1][i + 1], tolerance<TypeParam>);
-    }
-  });
+TYPED_TEST(RippleCovarianceOf, ElementsAreThoseOfTheCoefficientsThemselves) {
+  for_examples<TypeParam>([](Example<TypeParam>& its) { its.expect_dense("elements"); });
 }
 
 TYPED_TEST(RippleCovarianceOf, UncorrelatedIsADiagonal) {
   using Real = TypeParam;
-  Example<Real> its(3, 1);
+  Example<Real> its(4, 1);
   strainwave::detail::set_uncorrelated(its.p, Real(4));
   for (std::size_t i = 0; i < its.states; ++i) {
     for (std::size_t j = 0; j < its.states; ++j) {
@@ -125,206 +204,212 @@ TYPED_TEST(RippleCovarianceOf, UncorrelatedIsADiagonal) {
   }
 }
 
-TYPED_TEST(RippleCovarianceOf, ProjectionIsLTransposedH) {
-  // (L' h)' D (L' h) = h' P h for every h, and for a unit vector L's own row.
-  using Real = TypeParam;
-  for_examples<Real>([](Example<Real>& its) {
-    Real h[14] = {};
-    Real projected[14] = {};
-    double expected = 0.0;
-    for (std::size_t i = 0; i < its.count; ++i) {
-      h[i] = static_cast<Real>(its.h[i + 1]);
-      for (std::size_t j = 0; j < its.count; ++j) {
-        expected += its.h[i + 1] * its.dense[i + 1][j + 1] * its.h[j + 1];
-      }
-    }
-    strainwave::detail::project(its.p, its.count, h, projected);
-    double found = 0.0;
-    for (std::size_t j = 0; j < its.count; ++j) {
-      found += static_cast<double>(projected[j]) * static_cast<double>(projected[j]) *
-               static_cast<double>(its.p.variances_Nm2[j]);
-    }
-    EXPECT_NEAR(found / expected, 1.0, tolerance<Real>);
-    for (std::size_t i = 0; i < its.count; ++i) {
-      Real unit[14] = {};
-      unit[i] = Real(1);
-      strainwave::detail::project(its.p, its.count, unit, projected);
-      for (std::size_t j = 0; j < its.count; ++j) {
-        Real expected_element = i == j ? Real(1) : Real(0);
-        if (i > j) {
-          expected_element = strainwave::detail::column_of(its.p, j)[i - j - 1];
+TYPED_TEST(RippleCovarianceOf, TheFrameMovesWithoutChangingWhatItDescribes) {
+  for_examples<TypeParam>([](Example<TypeParam>& its) {
+    std::size_t orders_with_terms = 0;
+    its.each([&](std::size_t, std::size_t, std::size_t further) {
+      orders_with_terms += further > 0 ? 1U : 0U;
+    });
+    its.look(3.0);
+    for (std::size_t calls = 0; calls < 4; ++calls) {
+      std::size_t there = 0;
+      its.each([&](std::size_t a, std::size_t, std::size_t further) {
+        bool all = further > 0;
+        for (std::size_t t = 0; t < further; ++t) {
+          all = all && std::fabs(static_cast<double>(its.terms[a].factors[t]) -
+                                 static_cast<double>(its.p.frames[a][t])) < 1e-6;
         }
-        EXPECT_EQ(projected[j], expected_element);
-      }
+        there += all ? 1U : 0U;
+      });
+      EXPECT_EQ(there, std::min(calls, orders_with_terms));  // one order a call
+      strainwave::detail::follow(its.config, its.p, its.count, its.terms);
+      its.expect_dense("moved");
     }
   });
 }
 
-TYPED_TEST(RippleCovarianceOf, AddedVarianceIsOnTheDiagonalAlone) {
-  using Real = TypeParam;
-  for (const double variance : {0.0, 1e-4, 0.3, 50.0}) {
-    for_examples<Real>([variance](Example<Real>& its) {
-      for (std::size_t i = 0; i < its.count; ++i) {
-        strainwave::detail::add_variance(its.p, its.count, i, static_cast<Real>(variance));
-        its.dense[i + 1][i + 1] += variance;
-        its.expect_dense("added");
+TYPED_TEST(RippleCovarianceOf, TheFrameStaysWhileFactorsAreNear) {
+  for_examples<TypeParam>([](Example<TypeParam>& its) {
+    its.look(0.03);
+    const auto before = its.p;
+    strainwave::detail::follow(its.config, its.p, its.count, its.terms);
+    its.each([&](std::size_t a, std::size_t, std::size_t further) {
+      for (std::size_t t = 0; t < further; ++t) {
+        EXPECT_EQ(its.p.frames[a][t], before.frames[a][t]);
       }
     });
-  }
+  });
 }
 
-TYPED_TEST(RippleCovarianceOf, VarianceIsAddedToNothing) {
+TYPED_TEST(RippleCovarianceOf, ProcessNoiseIsThatOfTheCoefficientsThemselves) {
   using Real = TypeParam;
-  for (const std::size_t pair_count : pairs) {
-    Example<Real> its(pair_count, 1);
-    its.p = {};
-    its.dense = Matrix(its.states, Vector(its.states));
-    its.expect_dense("nothing");
-    for (std::size_t i = its.count; i-- > 0;) {
-      strainwave::detail::add_variance(its.p, its.count, i, Real(0));
-      its.expect_dense("nothing to nothing");
-      strainwave::detail::add_variance(its.p, its.count, i, Real(0.7));
-      its.dense[i + 1][i + 1] = static_cast<double>(Real(0.7));
-      its.expect_dense("something to nothing");
-    }
-  }
-}
-
-TYPED_TEST(RippleCovarianceOf, VarianceIsAddedBesideAPivotOfNothing) {
-  // Coefficient 1 is known for sure, 2 and T go with 0: what 0 gains, 2 and T gain with it, and L
-  // has no element for it in column 1.
-  using Real = TypeParam;
-  for (const bool by_zero : {false, true}) {
-    Example<Real> its(2, 1);
-    its.p = {};
-    const Real pivots[4] = {Real(1), Real(0), Real(0.5), Real(0.25)};
-    for (std::size_t j = 0; j < 4; ++j) {
-      its.p.variances_Nm2[j] = pivots[j];
-    }
-    its.p.torque_variance_Nm2 = Real(0.1);
-    strainwave::detail::column_of(its.p, 0)[0] = by_zero ? Real(0) : Real(0.5);
-    strainwave::detail::column_of(its.p, 0)[1] = Real(0.5);
-    its.p.torque_row[0] = Real(-0.5);
-    for (std::size_t i = 0; i < its.states; ++i) {
-      for (std::size_t j = 0; j < its.states; ++j) {
-        its.dense[i][j] = its.element(i, j);
-      }
-    }
-    strainwave::detail::add_variance(its.p, its.count, 0, Real(1));
-    its.dense[1][1] += 1.0;
-    its.expect_dense("beside nothing");
-  }
-}
-
-TYPED_TEST(RippleCovarianceOf, AScaledDeviationKeepsCorrelations) {
-  using Real = TypeParam;
-  for (const double scale : {0.03, 0.9, 7.0}) {
-    for_examples<Real>([scale](Example<Real>& its) {
-      for (std::size_t i = 0; i < its.count; ++i) {
-        strainwave::detail::scale_deviation(its.p, its.count, i, static_cast<Real>(scale));
-        for (std::size_t j = 0; j < its.states; ++j) {
-          its.dense[i + 1][j] *= scale;
-          its.dense[j][i + 1] *= scale;
-        }
-        its.expect_dense("scaled");
+  for_examples<Real>([](Example<Real>& its) {
+    its.each([&](std::size_t a, std::size_t first, std::size_t further) {
+      const double noise_Nm2 = 0.03 * static_cast<double>(a + 1);
+      EXPECT_FALSE(strainwave::detail::add_noise(its.p, a, first - 1, further,
+                                                 static_cast<Real>(noise_Nm2), Real(1e3)));
+      for (std::size_t i = first; i < first + 2 * (1 + further); ++i) {
+        its.dense[i][i] += noise_Nm2;
       }
     });
+    its.expect_dense("with noise");
+  });
+}
+
+TYPED_TEST(RippleCovarianceOf, WhatIsBeyondTheLimitGainsNothing) {
+  using Real = TypeParam;
+  Example<Real> its(3, 2);  // the first order has all three further pairs
+  const double limit_Nm2 = 0.5 * (its.dense[5][5] + its.dense[6][6]);
+  std::size_t beyond = 0;
+  for (std::size_t t = 1; t <= 3; ++t) {
+    const std::size_t i = 1 + 2 * t;
+    const bool gains = its.dense[i][i] + its.dense[i + 1][i + 1] <= 2.0 * limit_Nm2 * 0.9999;
+    beyond += gains ? 0U : 1U;
+    its.dense[i][i] += gains ? 0.02 : 0.0;
+    its.dense[i + 1][i + 1] += gains ? 0.02 : 0.0;
   }
+  ASSERT_GT(beyond, 0U);
+  ASSERT_LT(beyond, 3U);
+  double weight = 1.0;
+  for (const Real each : its.p.frames[0]) {
+    weight += static_cast<double>(each * each);
+  }
+  const auto ripple_Nm2 = static_cast<double>(strainwave::detail::element_of(its.p, 0, 0) +
+                                              strainwave::detail::element_of(its.p, 1, 1));
+  if (ripple_Nm2 <= 2.0 * weight * limit_Nm2) {
+    its.dense[1][1] += 0.02;
+    its.dense[2][2] += 0.02;
+  }
+  // A hair below the sum of the second pair's, so that it is beyond.
+  EXPECT_TRUE(strainwave::detail::add_noise(its.p, 0, 0, 3, Real(0.02),
+                                            static_cast<Real>(0.9999 * limit_Nm2)));
+  its.expect_dense("limited");
 }
 
 TYPED_TEST(RippleCovarianceOf, AMeasurementIsKalmansUpdate) {
   using Real = TypeParam;
   for (const double noise : {1e-3, 0.2, 30.0}) {
-    for_examples<Real>([noise](Example<Real>& its) {
-      for (int round = 0; round < 4; ++round) {
-        its.h = random_regressors(its.states, its.random);
+    for (const double jump_Nm2 : {0.0, 7.0, 1e12}) {
+      for_examples<Real>([&](Example<Real>& its) {
+        its.look(0.3);
+        const Vector h = its.regressors();
+        its.dense[0][0] += jump_Nm2;
         Vector ph(its.states);
         double variance = noise;
+        double ripple_variance = 0.0;
         for (std::size_t i = 0; i < its.states; ++i) {
           for (std::size_t j = 0; j < its.states; ++j) {
-            ph[i] += its.dense[i][j] * its.h[j];
+            ph[i] += its.dense[i][j] * h[j];
+            ripple_variance += i > 0 && j > 0 ? h[i] * its.dense[i][j] * h[j] : 0.0;
           }
-          variance += its.h[i] * ph[i];
+          variance += h[i] * ph[i];
         }
-        Real h[15] = {};
-        Real projected[14] = {};
-        Real gains[15] = {};
-        for (std::size_t i = 0; i < its.states; ++i) {
-          h[i] = static_cast<Real>(its.h[i]);
+        strainwave::detail::SeenCovariance<Real, 7> seen{};
+        Real row[16] = {};
+        strainwave::detail::enter_frame(its.config, its.p, its.terms, its.waves, seen.h);
+        strainwave::detail::see(its.p, its.count, seen);
+        EXPECT_NEAR(static_cast<double>(seen.ripple_variance_Nm2), ripple_variance,
+                    10 * tolerance<Real>);
+        const double found = noise + jump_Nm2 + static_cast<double>(its.p.torque_variance_Nm2) +
+                             2.0 * static_cast<double>(seen.shared_Nm2) +
+                             static_cast<double>(seen.ripple_variance_Nm2);
+        EXPECT_NEAR(found / variance, 1.0, tolerance<Real>);
+        strainwave::detail::measure_torque(its.p, its.count, seen, static_cast<Real>(noise),
+                                           static_cast<Real>(1.0 / variance), row);
+        strainwave::detail::measure_coefficients(its.p, its.count, row,
+                                                 static_cast<Real>(std::sqrt(1.0 / variance)));
+        strainwave::detail::leave_frame(its.config, its.p, row);
+        for (std::size_t i = 1; i < its.states; ++i) {
+          EXPECT_NEAR(static_cast<double>(row[i - 1]), ph[i], 10 * tolerance<Real>);
         }
-        strainwave::detail::project(its.p, its.count, h + 1, projected);
-        const Real found = strainwave::detail::measure(its.p, its.count, projected,
-                                                       static_cast<Real>(noise), gains);
-        EXPECT_NEAR(static_cast<double>(found) / variance, 1.0, tolerance<Real>);
-        for (std::size_t i = 0; i < its.states; ++i) {
-          EXPECT_NEAR(static_cast<double>(gains[i]), ph[i] / variance, 10 * tolerance<Real>);
-          for (std::size_t j = 0; j < its.states; ++j) {
-            its.dense[i][j] -= ph[i] * ph[j] / variance;
+        // T's row of (I - g h') P (I - g h')' + R g g', which loses nothing to a large jump.
+        const double left = 1.0 - ph[0] / variance;
+        Matrix after = its.dense;
+        for (std::size_t i = 1; i < its.states; ++i) {
+          for (std::size_t j = 1; j < its.states; ++j) {
+            after[i][j] -= ph[i] * ph[j] / variance;
           }
+          double ripple_row = 0.0;
+          for (std::size_t j = 1; j < its.states; ++j) {
+            ripple_row += its.dense[i][j] * h[j];
+          }
+          after[0][i] = after[i][0] = left * ph[i] - ripple_row;
         }
+        double rest = noise + ripple_variance;
+        for (std::size_t j = 1; j < its.states; ++j) {
+          rest += its.dense[0][j] * h[j];
+        }
+        after[0][0] = noise + ripple_variance - rest * rest / variance;
+        its.dense = after;
         its.expect_dense("measured");
         EXPECT_GT(its.p.torque_variance_Nm2, Real(0));
-        for (std::size_t j = 0; j < its.count; ++j) {
-          EXPECT_GT(its.p.variances_Nm2[j], Real(0));
-        }
-      }
-    });
+      });
+    }
   }
 }
 
 TYPED_TEST(RippleCovarianceOf, TwoThatCannotBeToldApartKeepTheirSign) {
-  // Measured by their sum alone: its variance falls by eight decades, that of their difference not.
+  // An order at one load: its ripple's variance falls by seven decades, its load pair's does not.
   using Real = TypeParam;
-  RippleCovariance<Real, 1> p;
-  strainwave::detail::set_uncorrelated(p, Real(4));
-  const Real h[2] = {Real(0.6), Real(0.6)};
-  Real projected[2] = {};
-  Real gains[3] = {};
+  Example<Real> its(1, 1);
+  strainwave::detail::set_uncorrelated(its.p, Real(4));
+  its.terms[0].factors[0] = Real(0.3);
+  strainwave::detail::SeenCovariance<Real, 7> seen{};
   for (int k = 0; k < 1000; ++k) {
-    strainwave::detail::project(p, std::size_t{2}, h, projected);
-    (void)strainwave::detail::measure(p, std::size_t{2}, projected, Real(1e-4), gains);
+    const double angle_rad = 0.15 * k;
+    its.waves[0] = {static_cast<Real>(std::cos(angle_rad)), static_cast<Real>(std::sin(angle_rad))};
+    strainwave::detail::follow(its.config, its.p, its.count, its.terms);
+    strainwave::detail::enter_frame(its.config, its.p, its.terms, its.waves, seen.h);
+    strainwave::detail::see(its.p, its.count, seen);
+    const Real variance = seen.ripple_variance_Nm2 + Real(1e-4);
+    strainwave::detail::measure_coefficients(its.p, its.count, seen.ripple_row_Nm2,
+                                             Real(1) / std::sqrt(variance));
   }
-  EXPECT_EQ(p.torque_variance_Nm2, Real(0));
-  strainwave::detail::project(p, std::size_t{2}, h, projected);
-  double sum = 0.0;
-  for (std::size_t j = 0; j < 2; ++j) {
-    ASSERT_GT(p.variances_Nm2[j], Real(0));
-    sum += static_cast<double>(projected[j] * projected[j] * p.variances_Nm2[j]);
-  }
-  EXPECT_NEAR(sum / 1e-7, 1.0, sizeof(Real) == 4 ? 0.01 : 1e-6);  // the mean of 1000
-  EXPECT_NEAR(strainwave::detail::variance_of(p, 0), 2.0, 1e-3);
-  EXPECT_NEAR(strainwave::detail::variance_of(p, 1), 2.0, 1e-3);
+  // Least squares: each of cosine and sine from half of the samples, R / 500.
+  EXPECT_NEAR(static_cast<double>(seen.ripple_variance_Nm2) / 2e-7, 1.0, 0.01);
+  // Of the load pair what the ripple's knowledge leaves: 4 (1 - 0.3^2 / (1 + 0.3^2)).
+  EXPECT_NEAR(its.element(3, 3), 4.0 / 1.09, 1e-4);
+  EXPECT_NEAR(its.element(4, 4), 4.0 / 1.09, 1e-4);
 }
 
 TYPED_TEST(RippleCovarianceOf, ResultsDoNotDependOnTheCapacity) {
   using Real = TypeParam;
-  constexpr std::size_t states = 7;
+  const auto small = structure<Real, 6>(4);
+  const auto config = structure<Real, 32>(4);
+  const std::size_t count = 2 * strainwave::pair_count(small);
+  ASSERT_EQ(count, 12U);  // all of the smaller capacity
   Random random(11);
-  const Matrix dense = random_covariance(states, random);
-  auto exact = factored<Real, 3>(dense, states);
-  auto large = factored<Real, 32>(dense, states);
-  const auto step = [](auto& p, const Vector& with, std::size_t i, Real* gains) {
-    Real h[states] = {};
-    Real projected[states - 1] = {};
-    for (std::size_t j = 0; j < states; ++j) {
-      h[j] = static_cast<Real>(with[j]);
-    }
-    strainwave::detail::add_variance(p, states - 1, i, Real(0.01));
-    strainwave::detail::scale_deviation(p, states - 1, (i + 2) % (states - 1), Real(0.97));
+  const Matrix dense = random_covariance(1 + count, random);
+  auto exact = covariance_like<Real, 6>(dense, 1 + count);
+  auto large = covariance_like<Real, 32>(dense, 1 + count);
+  strainwave::OrderTerms<Real> terms[3] = {};
+  strainwave::CosSin<Real> waves[3] = {};
+  const auto step = [&](const auto& its_config, auto& p, auto& seen) {
+    Real row[64] = {};
+    strainwave::detail::follow(its_config, p, count, terms);
+    strainwave::detail::enter_frame(its_config, p, terms, waves, seen.h);
+    strainwave::detail::see(p, count, seen);
+    const Real variance =
+        Real(0.1) + p.torque_variance_Nm2 + Real(2) * seen.shared_Nm2 + seen.ripple_variance_Nm2;
+    strainwave::detail::measure_torque(p, count, seen, Real(0.1), Real(1) / variance, row);
+    strainwave::detail::measure_coefficients(p, count, row, std::sqrt(Real(1) / variance));
+    (void)strainwave::detail::add_noise(p, 0, 0, 2, Real(0.01), Real(1));
     p.torque_variance_Nm2 += Real(0.003);
-    strainwave::detail::project(p, states - 1, h + 1, projected);
-    return strainwave::detail::measure(p, states - 1, projected, Real(0.1), gains);
+    return variance;
   };
-  for (std::size_t k = 0; k < 200; ++k) {
-    const Vector h = random_regressors(states, random);
-    Real gains[2][states] = {};
-    ASSERT_EQ(step(exact, h, k % (states - 1), gains[0]),
-              step(large, h, k % (states - 1), gains[1]));
-    for (std::size_t i = 0; i < states; ++i) {
-      ASSERT_EQ(gains[0][i], gains[1][i]);
-      for (std::size_t j = 0; j < states; ++j) {
-        ASSERT_EQ(strainwave::detail::covariance_of(exact, states - 1, i, j),
-                  strainwave::detail::covariance_of(large, states - 1, i, j));
+  for (int k = 0; k < 200; ++k) {
+    for (std::size_t a = 0; a < 3; ++a) {
+      terms[a].factors[0] = static_cast<Real>(random.uniform());
+      terms[a].factors[1] = static_cast<Real>(random.uniform());
+      waves[a] = {static_cast<Real>(random.uniform()), static_cast<Real>(random.uniform())};
+    }
+    strainwave::detail::SeenCovariance<Real, 6> seen{};
+    strainwave::detail::SeenCovariance<Real, 32> seen_large{};
+    ASSERT_EQ(step(small, exact, seen), step(config, large, seen_large));
+    for (std::size_t i = 0; i <= count; ++i) {
+      for (std::size_t j = 0; j <= count; ++j) {
+        ASSERT_EQ(strainwave::detail::covariance_of(small, exact, count, i, j),
+                  strainwave::detail::covariance_of(config, large, count, i, j));
       }
     }
   }

@@ -113,7 +113,6 @@ std::vector<double> dense_ripple(std::size_t first) {
   const double noise = 0.04 * 0.04;
   const double walk = 1.3 * 1.3 * 1e-3;
   const double pi = 3.14159265358979323846;
-  double waiting[2] = {};
   Vector x{};
   Matrix p{};
   for (std::size_t i = 1; i < n; ++i) {
@@ -124,25 +123,9 @@ std::vector<double> dense_ripple(std::size_t first) {
   std::vector<Matrix> before_p(samples);
   std::vector<Vector> after_x(samples);
   std::vector<Matrix> after_p(samples);
-  // The core's turns begin with the first rotation that is learned from, here row `first`.
-  std::size_t pair = 0;
   for (std::size_t k = first; k < samples; ++k) {
     const Vector h = row_at(k);
     p[0][0] += walk;
-    for (std::size_t a = 0; a < 2; ++a) {
-      const double chord = 2.0 - 2.0 * std::cos((a == 0 ? 2.0 : 4.0) * turn_rad);
-      waiting[a] += 2.0 * (noise + walk / chord) * std::pow(turn_rad / (2.0 * pi * 30.0), 2);
-    }
-    pair = 1 - pair;
-    for (std::size_t i = 1 + 2 * pair; i < 3 + 2 * pair; ++i) {
-      const double scale_of_limit = p[i][i] > 4.0 ? std::sqrt(4.0 / p[i][i]) : 1.0;
-      for (std::size_t j = 0; j < n; ++j) {
-        p[i][j] *= scale_of_limit;
-        p[j][i] *= scale_of_limit;
-      }
-      p[i][i] += waiting[pair];
-    }
-    waiting[pair] = 0.0;
     if (k == first) {  // T's variance is infinite: written as the core's limit of it
       x[0] = torque_Nm[k];
       Vector covariance = product(p, {0.0, h[1], h[2], h[3], h[4]});
@@ -176,6 +159,17 @@ std::vector<double> dense_ripple(std::size_t first) {
     }
     after_x[k] = x;
     after_p[k] = p;
+    // Process noise comes after the update, and before the next sample's.
+    for (std::size_t a = 0; a < 2 && k > first; ++a) {
+      const double chord = 2.0 - 2.0 * std::cos((a == 0 ? 2.0 : 4.0) * turn_rad);
+      const std::size_t i = 1 + 2 * a;
+      if (p[i][i] + p[i + 1][i + 1] <= 8.0) {
+        const double gained =
+            2.0 * (noise + walk / chord) * std::pow(turn_rad / (2.0 * pi * 30.0), 2);
+        p[i][i] += gained;
+        p[i + 1][i + 1] += gained;
+      }
+    }
   }
   std::vector<double> ripple(samples);
   Vector smoothed = x;
