@@ -10,7 +10,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <type_traits>
-#include <utility>
 
 #if (defined(__x86_64__) || defined(__aarch64__)) && defined(__has_builtin)
 #if __has_builtin(__builtin_shufflevector)
@@ -55,8 +54,7 @@ struct OneRegister {
   /// The first lanes of one, the others of the other.
   [[nodiscard]] static OneRegister joined(std::ptrdiff_t first, const OneRegister& one,
                                           const OneRegister& other) {
-    return {indices(std::make_index_sequence<Count>()) < static_cast<Index>(first) ? one.values
-                                                                                   : other.values};
+    return {indices() < static_cast<Index>(first) ? one.values : other.values};
   }
 
   /// Halves added until one number is left.
@@ -74,9 +72,14 @@ struct OneRegister {
   }
 
  private:
-  template <std::size_t... I>
-  [[nodiscard]] static Indices indices(std::index_sequence<I...> /*lanes*/) {
-    return Indices{static_cast<Index>(I)...};
+  [[nodiscard]] static Indices indices() {
+    if constexpr (Count == 8) {
+      return Indices{0, 1, 2, 3, 4, 5, 6, 7};
+    } else if constexpr (Count == 4) {
+      return Indices{0, 1, 2, 3};
+    } else {
+      return Indices{0, 1};
+    }
   }
 };
 

@@ -9,7 +9,6 @@
 /// stored.
 #pragma once
 
-#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -167,8 +166,8 @@ constexpr void add_process_noise(const OscillatorFilterConfig<Real, MaxOrders>& 
 template <class Real>
 [[nodiscard]] constexpr bool is_between(Real least, Real value, Real most) {
   using Bits = std::conditional_t<sizeof(Real) == 4, std::uint32_t, std::uint64_t>;
-  const Bits from = std::bit_cast<Bits>(least);
-  return std::bit_cast<Bits>(value) - from <= std::bit_cast<Bits>(most) - from;
+  const Bits from = __builtin_bit_cast(Bits, least);
+  return __builtin_bit_cast(Bits, value) - from <= __builtin_bit_cast(Bits, most) - from;
 }
 
 /// Eq. (12) to (14): gain, states and covariance after the measurement, plus the process noise; the
