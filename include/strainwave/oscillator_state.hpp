@@ -5,8 +5,7 @@
 /// Structure used: the transition is one 2x2 rotation per order, and process noise of one variance
 /// for both states of an order is the same in every frame.  The oscillators are therefore described
 /// in a frame that turns with them: states and covariance then stand still, and it is the output
-/// row 1 0 1 0 ... that turns.  The covariance is symmetric because only one triangle of it is
-/// stored.
+/// row 1 0 1 0 ... that turns.
 #pragma once
 
 #include <cstddef>
