@@ -143,6 +143,57 @@ TYPED_TEST(GaugeMonitor, ALostGaugeStaysLostUntilCleared) {
   ASSERT_EQ(joint.run(100), 0);
 }
 
+TYPED_TEST(GaugeMonitor, ARailInsideTheConvertersRangeIsARail) {
+  for (const double rail_V : {9.2, -9.2}) {
+    Joint<TypeParam> joint;
+    joint.config.monitor.lowest_V = TypeParam(-9);
+    joint.config.monitor.highest_V = TypeParam(9);
+    joint.config.monitor.consistency.samples = 0;
+    ASSERT_EQ(joint.run(100), 0);
+    for (std::uint32_t i = 1; i <= detection_samples; ++i) {
+      joint.advance();
+      joint.sample.codes[1] = joint.code(rail_V);
+      const auto reading = joint.take();
+      EXPECT_EQ(reading.left_out_gauge, 2);
+      EXPECT_EQ(has(reading.status, StatusFlag::gauge_lost), i == detection_samples);
+    }
+    EXPECT_EQ(joint.state.monitor.fault, rail_V > 0 ? GaugeFault::open : GaugeFault::saturated);
+  }
+}
+
+TYPED_TEST(GaugeMonitor, CodesAtTheEndsNeedNotBeCountedBeforehand) {
+  Joint<TypeParam> joint;
+  auto other = joint.state.monitor;
+  for (int i = 0; i < 2000; ++i) {
+    joint.advance();
+    if (i % 50 > 20) {
+      joint.fail(i % 3 == 0 ? 3 : 1, i % 7 == 0 ? GaugeFault::open : GaugeFault::saturated, {});
+    }
+    if (i % 200 == 0) {
+      clear_lost_gauge(joint.state.monitor);
+      clear_lost_gauge(other);
+    }
+    TypeParam volts[gauge_count] = {};
+    strainwave::GaugeSignals<TypeParam> signals;
+    signals.count = gauge_count;
+    signals.codes = joint.sample.codes;
+    signals.volts = volts;
+    signals.motor_phase = joint.sample.motor_phase;
+    std::size_t at_end = 0;
+    for (std::size_t j = 0; j < gauge_count; ++j) {
+      volts[j] = to_volts(joint.config.converter, joint.sample.codes[j]);
+      at_end += is_saturated(joint.config.converter, joint.sample.codes[j]) ? 1U : 0U;
+    }
+    const auto& config = joint.config;
+    const auto uncounted = watch(config.monitor, other, config.converter, signals);
+    signals.at_end = at_end;
+    const auto counted = watch(config.monitor, joint.state.monitor, config.converter, signals);
+    ASSERT_EQ(counted.left_out, uncounted.left_out) << i;
+    ASSERT_EQ(counted.status, uncounted.status) << i;
+  }
+  EXPECT_EQ(joint.state.monitor.lost_gauge, other.lost_gauge);
+}
+
 TYPED_TEST(GaugeMonitor, ZerosOfTheGaugesGoWithTheGains) {
   Joint<TypeParam> joint;
   auto& monitor = joint.config.monitor;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <random>
 
 namespace {
 
@@ -125,6 +126,19 @@ TEST(Units, RadiansThereAndBack) {
     const double angle_rad = 0.7371 * i;
     const Phase phase = strainwave::phase_from_radians(angle_rad);
     EXPECT_NEAR(strainwave::to_radians<double>(phase), angle_rad, 7.4e-10);  // half a unit
+  }
+}
+
+TEST(Units, DifferencesAreExactAcrossTurnsAndFarFromZero) {
+  std::mt19937_64 random(11);
+  for (int i = 0; i < 20000; ++i) {
+    const auto units = static_cast<std::int64_t>(random()) >> (i % 50 + 12);  // below 2^51
+    const Phase before = {
+        static_cast<std::int64_t>(random()) >> (i % 60 + 2),
+        i % 5 == 0 ? (i % 2 == 0 ? 0U : 0xFFFFFFFFU) : static_cast<std::uint32_t>(random())};
+    const Phase way = {units >> 32U, static_cast<std::uint32_t>(units)};
+    ASSERT_EQ(before + way - before, way) << i;
+    ASSERT_EQ(strainwave::to_turns<double>(way), static_cast<double>(units) * 0x1p-32) << i;
   }
 }
 
