@@ -15,7 +15,7 @@ from helpers.certified import SESSION, certificate_of, session_of, write_certifi
 from helpers.elbow import TEXT
 from strainwave.certificate.judging import judgements
 from strainwave.certificate.sealing import read_block
-from strainwave.certificate.session import session_template
+from strainwave.certificate.session import read_session, session_template
 from strainwave.errors import InputError
 from strainwave.joint import canonical_hash, parse_joint
 from strainwave.report.certificate import certificate_figures, certificate_page, judged_text
@@ -246,3 +246,23 @@ def test_a_joint_without_serial_or_results_is_refused(tmp_path: Path) -> None:
 def test_the_block_is_plain_json(tmp_path: Path) -> None:
     block = certificate_of(tmp_path).block
     assert json.loads(json.dumps(block, allow_nan=False)) == block
+
+
+@pytest.mark.parametrize(
+    ("line", "instead", "words"),
+    [
+        ('operator = ""', "", 'the key "operator" is missing (who calibrated); add it'),
+        ('operator = ""', "operator = 5", "operator = 5: expected a text"),
+        ('operator = ""', "operator = [5]", "operator = [5]: expected a text"),
+    ],
+)
+def test_a_key_of_no_section_is_named_without_brackets(
+    tmp_path: Path, line: str, instead: str, words: str
+) -> None:
+    path = tmp_path / "session.toml"
+    template = session_template()
+    assert template.count(line) == 1
+    path.write_text(template.replace(line, instead))
+    with pytest.raises(InputError) as caught:
+        read_session(path)
+    assert str(caught.value).startswith(f"{path}: {words}")

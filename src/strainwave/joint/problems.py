@@ -90,8 +90,18 @@ def place(location: Location, *, table: bool = False) -> str:
     return f"[{path}] {', '.join(rest)}".rstrip()
 
 
+def _value_place(at: Place) -> str:
+    """As `place`; a key outside the sections stands without their brackets."""
+    key, *entries = at.location or ("",)
+    if at.field is None or at.models or not all(isinstance(each, int) for each in entries):
+        return place(at.location)
+    return ", ".join([str(key), *(f"entry {int(each) + 1}" for each in entries)])
+
+
 def _missing(at: Place) -> str:
     *table_location, key = at.location
+    if not table_location and not at.models:
+        return f'the key "{key}" is missing{_about(at.field)}; add it'
     if not table_location:
         return f"the section {place(at.location)} is missing{_about(at.field)}; add it"
     return f'{place(table_location, table=True)} lacks the key "{key}"{_about(at.field)}; add it'
@@ -184,7 +194,7 @@ def sentence(error: ErrorDetails, model: type[BaseModel], prefix: Sequence[str] 
     """
     location = (*prefix, *error["loc"])
     at = place_at(model, location)
-    where = place(at.location)
+    where = _value_place(at)
     kind = error["type"]
     if kind == "missing":
         return _missing(at)
