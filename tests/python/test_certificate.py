@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from matplotlib.figure import Figure
 
 from helpers.certified import SESSION, certificate_of, session_of, write_certificate
 from helpers.elbow import TEXT
@@ -18,8 +19,10 @@ from strainwave.certificate.sealing import read_block
 from strainwave.certificate.session import read_session, session_template
 from strainwave.errors import InputError
 from strainwave.joint import canonical_hash, parse_joint
+from strainwave.records.checks import check_output
 from strainwave.report.certificate import certificate_figures, certificate_page, judged_text
 from strainwave.report.certificate_pdf import certificate_images, certificate_pdf
+from strainwave.report.figure_file import write_figure
 
 
 class Cells(HTMLParser):
@@ -266,3 +269,15 @@ def test_a_key_of_no_section_is_named_without_brackets(
     with pytest.raises(InputError) as caught:
         read_session(path)
     assert str(caught.value).startswith(f"{path}: {words}")
+
+
+def test_no_figure_is_written_over_a_certificate(tmp_path: Path) -> None:
+    certificate = certificate_of(tmp_path)
+    issued, figure = tmp_path / "certificate.pdf", tmp_path / "figure.pdf"
+    issued.write_bytes(certificate_pdf(certificate, certificate_figures(certificate)))
+    with pytest.raises(InputError, match=r"--figure .*: it is an issued certificate"):
+        check_output(issued, option="--figure", endings=(".pdf",))
+    drawn = Figure()
+    drawn.suptitle("Calibration")
+    write_figure(drawn, figure)
+    check_output(figure, option="--figure", endings=(".pdf",))

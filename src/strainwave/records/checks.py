@@ -20,6 +20,11 @@ if TYPE_CHECKING:
 
 SHORTEST_INTERVAL_S: Final = 1e-9
 OUTPUT_ENDINGS: Final = (".csv", ".parquet")
+#: What a certificate holds and no other page or figure does: its block, and its title.
+_CERTIFICATE_MARKS: Final = {
+    ".html": b'id="strainwave-certificate"',
+    ".pdf": b"Calibration certificate ",
+}
 
 
 def check_output(
@@ -53,7 +58,7 @@ def check_output(
         )
     if out.is_dir():
         raise InputError(f"{option} {out}: it is a folder; expected a file, so add a file name")
-    if out.suffix.lower() == ".html" and _is_certificate(out):
+    if _is_certificate(out):
         raise InputError(
             f"{option} {out}: it is an issued certificate, which is never written over; expected a "
             "name of its own, so choose another name"
@@ -78,9 +83,10 @@ def check_output(
         ) from error
 
 
-def _is_certificate(page: Path) -> bool:
+def _is_certificate(path: Path) -> bool:
+    mark = _CERTIFICATE_MARKS.get(path.suffix.lower())
     try:
-        return page.is_file() and b'id="strainwave-certificate"' in page.read_bytes()
+        return mark is not None and path.is_file() and mark in path.read_bytes()
     except OSError:
         return False
 
