@@ -14,7 +14,6 @@
 
 #include <cstddef>
 #include <type_traits>
-#include <utility>
 
 #include "strainwave/arithmetic.hpp"
 #include "strainwave/number_row.hpp"
@@ -51,7 +50,7 @@ namespace detail {
 
 /// How far factors may be from the frame's before it moves: near enough for float, and far enough
 /// that a sample on which it moves is rare.
-inline constexpr float widest_frame_offset = 1.0F / 32.0F;
+inline constexpr float widest_frame_offset = 1.0F / 16.0F;
 
 }  // namespace detail
 
@@ -81,9 +80,12 @@ constexpr auto with_count(std::size_t count, const Call& call) {
 
 // Count: std::size_t, or a std::integral_constant of it.
 
-template <class Call, std::size_t... Index>
-constexpr void call_each(const Call& call, std::index_sequence<Index...> /*indices*/) {
-  (call(std::integral_constant<std::size_t, Index>{}), ...);
+template <std::size_t From, std::size_t To, class Call>
+constexpr void call_each(const Call& call) {
+  if constexpr (From < To) {
+    call(std::integral_constant<std::size_t, From>{});
+    call_each<From + 1, To>(call);
+  }
 }
 
 /// Keeps the compiler from loading ahead what it then has no registers for: what is written out
@@ -101,7 +103,7 @@ constexpr void begin_anew() {
 template <class Count, class Call>
 constexpr void repeat(Count count, const Call& call) {
   if constexpr (!whole_rows && !std::is_same_v<Count, std::size_t>) {
-    call_each(call, std::make_index_sequence<Count::value>{});
+    call_each<0, Count::value>(call);
   } else {
     for (std::size_t i = 0; i < count; ++i) {
       call(i);
@@ -171,19 +173,6 @@ constexpr void replace_row(RippleCovariance<Real, MaxPairs>& p, Count count, std
   }
 }
 
-template <class Real, std::size_t MaxPairs, class Call, std::size_t... Orders>
-constexpr void written_out(const RippleFilterConfig<Real, MaxPairs>& config, const Call& call,
-                           std::index_sequence<Orders...> /*orders*/) {
-  std::size_t b = 0;
-  const auto one = [&](std::size_t a) {
-    if (a < config.order_count && b + 2 * pairs_of(config.orders[a]) <= 2 * MaxPairs) {
-      call(a, b);
-      b += 2 * pairs_of(config.orders[a]);
-    }
-  };
-  (one(Orders), ...);
-}
-
 /// Calls with each order and the first of its coefficients, and with none that the capacity does
 /// not hold (check() refuses such a configuration).  Written out where no whole rows are kept:
 /// there the configuration is a constant, and places in P then are constants, too.
@@ -200,7 +189,13 @@ constexpr void each_order(const RippleFilterConfig<Real, MaxPairs>& config, cons
       b = end;
     }
   } else {
-    written_out(config, call, std::make_index_sequence<MaxPairs>{});
+    std::size_t b = 0;
+    call_each<0, MaxPairs>([&](std::size_t a) {
+      if (a < config.order_count && b + 2 * pairs_of(config.orders[a]) <= 2 * MaxPairs) {
+        call(a, b);
+        b += 2 * pairs_of(config.orders[a]);
+      }
+    });
   }
 }
 

@@ -230,7 +230,7 @@ TYPED_TEST(RippleCovarianceOf, TheFrameMovesWithoutChangingWhatItDescribes) {
 
 TYPED_TEST(RippleCovarianceOf, TheFrameStaysWhileFactorsAreNear) {
   for_examples<TypeParam>([](Example<TypeParam>& its) {
-    its.look(0.03);
+    its.look(0.06);
     const auto before = its.p;
     strainwave::detail::follow(its.config, its.p, its.count, its.terms);
     its.each([&](std::size_t a, std::size_t, std::size_t further) {

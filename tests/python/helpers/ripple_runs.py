@@ -76,9 +76,6 @@ class Dense:
         self.scale = 3 * config.torque_noise_Nm
         self.load = 0.0
         self.weights = []
-        # Process noise waits by pairs; pair i has the states 1 + 2 i and 2 + 2 i.
-        self.waiting = np.zeros(n // 2)
-        self.turn = 0
         self.typical = 0.0
 
     def h(self, angle, speed):
@@ -97,35 +94,39 @@ class Dense:
                 row += [factor * math.cos(order * angle), factor * math.sin(order * angle)]
         return np.array(row)
 
-    def gained(self, h, turned, interval):
-        """What each pair's variances gain: its order's noise over the sum of its squares in h."""
+    def walk(self, h, turned, interval):
+        """Process noise of the coefficients, after a sample: an order's over its squares in h.
+
+        A pair that is less known than in the beginning gains nothing; the first pair of an order
+        is judged by the ripple that all of them make.
+        """
         c = self.config
         R, walk = c.torque_noise_Nm**2, c.torque_walk_Nm_per_sqrt_s**2
         # Over a gap the noise is that of the typical intervals in it.
         gap = self.typical > 0 and interval > 2 * self.typical
         pieces = interval / self.typical if gap else 1.0
-        each = np.zeros(len(self.waiting))
+        share = min(1.0, (turned / (2 * np.pi * c.memory_turns)) ** 2 / pieces)
+        variances = np.diag(self.P)
+        added = np.zeros(len(self.x))
         for a, order in enumerate(self.orders):
-            arc = abs(order * turned) / pieces
-            chord = arc**2 if gap else 4 * np.sin(min(arc, np.pi) / 2) ** 2
-            chord = 4.0 if arc > np.pi else min(chord, 4.0)
-            share = min(1.0, (turned / (2 * np.pi * c.memory_turns)) ** 2 / pieces)
-            seen = np.sum(h[self.block == a] ** 2)
-            of_order = self.block[1::2] == a
-            each[of_order] = 2 * share * (R + walk * interval / pieces / chord) / seen
-        return each
-
-    def predict(self, h, turned, interval):
-        """Coefficients' process noise: gained by every pair, given to one in turn."""
-        if turned != 0:
-            self.waiting += self.gained(h, turned, interval)
-        self.turn = (self.turn + 1) % len(self.waiting)
-        for i in (1 + 2 * self.turn, 2 + 2 * self.turn):
-            shrink = min(1.0, self.config.initial_amplitude_Nm / math.sqrt(self.P[i, i]))
-            self.P[i, :] *= shrink
-            self.P[:, i] *= shrink
-            self.P[i, i] += self.waiting[self.turn]
-        self.waiting[self.turn] = 0.0
+            arc = min(abs(order * turned) / pieces, np.pi)
+            rows = np.flatnonzero(self.block == a)
+            seen = np.sum(h[rows] ** 2)
+            if arc == 0:
+                continue
+            each = 2 * share * (R + walk * interval / pieces / (4 * np.sin(arc / 2) ** 2)) / seen
+            most = 2 * c.initial_amplitude_Nm**2
+            for i in rows[2::2]:
+                if variances[i] + variances[i + 1] <= most:
+                    added[i : i + 2] = each
+            factors = h[rows[0::2]] / h[rows[0]]
+            ripple = sum(
+                factors @ self.P[np.ix_(rows[side::2], rows[side::2])] @ factors
+                for side in (0, 1)
+            )
+            if ripple <= seen * most:
+                added[rows[:2]] = each
+        self.P += np.diag(added)
 
     def run(self, time, angle, torque, expected):
         c = self.config
@@ -174,8 +175,6 @@ class Dense:
             last = where
             moving = abs(smooth) >= c.minimum_speed_rad_s
             self.P[0, 0] += c.torque_walk_Nm_per_sqrt_s**2 * min(interval, single(0.1))
-            if moving:
-                self.predict(h, turned, interval)
             P = self.P.copy()
             e = rest - self.x[0]
             s = h @ P @ h + R
@@ -194,6 +193,7 @@ class Dense:
                 change = single(0.06) * min(abs(turned), 3) * ((abs(e) > self.scale) - single(0.3))
                 self.scale *= 1 + change + change**2 / 2
                 self.scale = max(self.scale, 0.5 * c.torque_noise_Nm)
+                self.walk(h, turned, interval)
             share = interval / (interval + single(1 / (2 * np.pi * 15)))
             self.load += share * (torque[k] - everything[k] - self.load)
             self.typical += (min(interval, 2 * typical) - typical) / 64 if typical else interval
