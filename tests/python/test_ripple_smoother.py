@@ -36,7 +36,7 @@ def _dense_smoother(
     """Kalman filter and Rauch-Tung-Striebel smoother, dense, with the ripple filter's model.
 
     An innovation beyond three scales raises T's variance by what brings it back there. Process noise
-    waits for its pair's turn, one a row.
+    comes after a row.
     """
     orders = np.array([2.0, 4.0])
     noise = config.torque_noise_Nm**2
@@ -51,7 +51,6 @@ def _dense_smoother(
     share = (step_rad / (2 * np.pi * config.memory_turns)) ** 2
     chords = 2 - 2 * np.cos(orders * step_rad)
     gained = 2 * share * (noise + walk / chords)
-    waiting = np.zeros(len(orders))
     mean = np.zeros(size)
     covariance = np.eye(size) * config.initial_amplitude_Nm**2
     # T's variance is infinite before the first row that is learned from: written as 1e6.
@@ -61,14 +60,6 @@ def _dense_smoother(
     for k in range(start, len(angle)):
         covariance = covariance.copy()
         covariance[0, 0] += walk * (k > start)
-        waiting += gained
-        pair = (k - start + 1) % len(orders)
-        for i in (1 + 2 * pair, 2 + 2 * pair):
-            shrink = min(1.0, config.initial_amplitude_Nm / np.sqrt(covariance[i, i]))
-            covariance[i, :] *= shrink
-            covariance[:, i] *= shrink
-            covariance[i, i] += waiting[pair]
-        waiting[pair] = 0.0
         h = rows[k]
         variance = h @ covariance @ h + noise
         innovation = run["measured_Nm"][k] - h @ mean
@@ -86,6 +77,8 @@ def _dense_smoother(
         covariance = covariance - np.outer(gain, gain) * variance
         covariance = (covariance + covariance.T) / 2
         after.append((mean, covariance))
+        if k > start:
+            covariance = covariance + np.diag(np.concatenate([[0.0], np.repeat(gained, 2)]))
     smoothed = after[-1][0]
     ripple = np.empty(len(angle) - start)
     ripple[-1] = rows[-1, 1:] @ smoothed[1:]

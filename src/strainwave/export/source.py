@@ -128,17 +128,14 @@ def state_bytes(filter_name: str, gauges: int, capacity: int, real_bytes: int) -
     int
         Bytes, a multiple of 8.
     """
+    # Where the processor has vectors, columns are filled up to 2, 4 or a multiple of 8.
+    step = {1: 2, 2: 4}.get(capacity, 8)
+    column = -(-2 * capacity // step) * step
+    reals = (2 * capacity + 1) * column
     if filter_name == "ripple":
-        # Where the processor has vectors, rows are filled up to 4 or a multiple of 8.
-        coefficients = 2 * capacity
-        row = {2: 2, 4: 4}.get(coefficients, -(-coefficients // 8) * 8)
-        reals = (coefficients + 1) * row + 5 * capacity
-        fixed, code = 392 + 52 * real_bytes, 0
+        reals, fixed, code = reals + 5 * capacity, 392 + 52 * real_bytes, 0
     else:  # the chain keeps the last sample's codes besides
-        step = {1: 2, 2: 4}.get(capacity, 8)
-        column = -(-2 * capacity // step) * step
-        reals = (2 * capacity + 1) * column + capacity
-        fixed, code = 404 + 13 * real_bytes, 4
+        reals, fixed, code = reals + capacity, 404 + 13 * real_bytes, 4
     total = real_bytes * reals + (8 + code + 3 * real_bytes) * gauges + fixed
     return -(-total // 8) * 8
 
