@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file batch_oscillator_lanes.hpp
+/// A block of published filters side by side: configuration and state, a row of lanes for each
+/// number.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+
+#include "strainwave/batch_layout.hpp"
+#include "strainwave/oscillator_filter.hpp"
+
+namespace strainwave {
+
+/// Everything that changes from lane to lane is a row.  An order that a lane does not have is a
+/// pair of states whose output row is zero: nothing of it ever changes.
+template <class Real, std::size_t Orders>
+struct alignas(64) OscillatorLanes {
+  using Number = Real;
+  using Row = Real[block_width<Real>];
+  static constexpr std::size_t states = 2 * Orders;
+
+  Row order[Orders];
+  Row process_noise_variance_Nm2[Orders];
+  Row variance_limit_Nm2[Orders];  ///< infinite where there is none
+  Row measurement_noise_variance_Nm2;
+  Row initial_variance_Nm2[Orders];  ///< 0 for an order that the lane does not have
+  Row sample_period_s;
+  Row highest_order;
+  Row minimum_travel_rad;
+  Row minimum_speed_rad_s;
+  Row speed_share;  ///< of a sample in the smoothed speed
+  bool any_variance_limit = false;
+
+  Row states_Nm[states];
+  Row covariance_Nm2[states * (states + 1) / 2];
+  Row output[states];  ///< cosine and sine of each order
+  Row pending_rotation_rad;
+  Row needed_travel_rad;  ///< 0 once part of the rotation was applied without an update
+  Row samples_without_update;
+  Row last_speed_rad_s;
+  Row smoothed_speed_rad_s;
+  Row last_torque_Nm;
+
+  /// How often each flag of counted_flags was raised since the counts were taken; then samples with
+  /// a fault.
+  Row counts[8];
+  bool any_count = false;
+};
+
+/// Samples of a block, [time][block_width].  A stride of 0 reads or writes one row again and again.
+template <class Real>
+struct OscillatorTile {
+  const Real* measured_torque_Nm = nullptr;
+  const Real* motor_speed_rad_s = nullptr;
+  const Real* expected_torque_Nm = nullptr;
+  std::size_t expected_stride = block_width<Real>;
+  Real* torque_Nm = nullptr;
+  Real* ripple_Nm = nullptr;
+  std::size_t ripple_stride = block_width<Real>;
+  Real* status = nullptr;  ///< as numbers, which hold them exactly; null where not wanted
+  std::size_t sample_count = 0;
+};
+
+/// Flags that the published filter raises, as counted in OscillatorLanes.
+inline constexpr StatusFlag counted_flags[7] = {StatusFlag::torque_not_finite,
+                                                StatusFlag::rotation_invalid,
+                                                StatusFlag::expected_torque_not_finite,
+                                                StatusFlag::variance_limited,
+                                                StatusFlag::covariance_reset,
+                                                StatusFlag::at_rest,
+                                                StatusFlag::order_above_nyquist};
+
+namespace detail {
+
+/// One lane's configuration.
+template <class Real, std::size_t Orders, std::size_t MaxOrders>
+inline void put_config(OscillatorLanes<Real, Orders>& lanes, std::size_t lane,
+                       const OscillatorFilterConfig<Real, MaxOrders>& config) {
+  const bool is_limited = config.variance_limit_ratio > Real(0);
+  for (std::size_t a = 0; a < Orders; ++a) {
+    const bool is_used = a < active_orders(config);
+    const Real noise_Nm2 = is_used ? config.process_noise_variance_Nm2[a] : Real(0);
+    lanes.order[a][lane] = is_used ? to_real<Real>(config.orders[a]) : Real(0);
+    lanes.process_noise_variance_Nm2[a][lane] = noise_Nm2;
+    lanes.initial_variance_Nm2[a][lane] = is_used ? config.initial_variance_Nm2 : Real(0);
+    lanes.variance_limit_Nm2[a][lane] =
+        is_limited ? config.initial_variance_Nm2 + config.variance_limit_ratio * noise_Nm2
+                   : std::numeric_limits<Real>::infinity();
+  }
+  lanes.measurement_noise_variance_Nm2[lane] = config.measurement_noise_variance_Nm2;
+  lanes.sample_period_s[lane] = config.sample_period_s;
+  lanes.highest_order[lane] = highest_order(config);
+  lanes.minimum_travel_rad[lane] = config.minimum_travel_rad;
+  lanes.minimum_speed_rad_s[lane] = config.minimum_speed_rad_s;
+  lanes.speed_share[lane] =
+      config.sample_period_s / (config.sample_period_s + static_cast<Real>(speed_smoothing_s));
+  lanes.any_variance_limit = lanes.any_variance_limit || is_limited;
+}
+
+/// One lane's state.
+template <class Real, std::size_t Orders, std::size_t MaxOrders>
+inline void put_state(OscillatorLanes<Real, Orders>& lanes, std::size_t lane,
+                      const OscillatorFilterConfig<Real, MaxOrders>& config,
+                      const OscillatorFilterState<Real, MaxOrders>& state) {
+  const std::size_t used = 2 * active_orders(config);
+  for (std::size_t i = 0; i < 2 * Orders; ++i) {
+    const bool is_used = i < used;
+    lanes.states_Nm[i][lane] = is_used ? state.states_Nm[i] : Real(0);
+    const CosSin<Real> wave = is_used ? state.output[i / 2] : CosSin<Real>{Real(0), Real(0)};
+    lanes.output[i][lane] = i % 2 == 0 ? wave.cosine : wave.sine;
+    for (std::size_t j = 0; j <= i; ++j) {
+      lanes.covariance_Nm2[packed_index(i, j)][lane] =
+          is_used ? state.covariance_Nm2[packed_index(i, j)] : Real(0);
+    }
+  }
+  lanes.pending_rotation_rad[lane] = state.pending_rotation_rad;
+  lanes.needed_travel_rad[lane] = state.rotated_without_update ? Real(0) : config.minimum_travel_rad;
+  lanes.samples_without_update[lane] = static_cast<Real>(state.samples_without_update);
+  lanes.last_speed_rad_s[lane] = state.last_speed_rad_s;
+  lanes.smoothed_speed_rad_s[lane] = state.smoothed_speed_rad_s;
+  lanes.last_torque_Nm[lane] = state.last_torque_Nm;
+  for (std::size_t flag = 0; flag < 8; ++flag) {
+    lanes.counts[flag][lane] = Real(0);
+  }
+}
+
+/// The way back; counters stay as they are.
+template <class Real, std::size_t Orders, std::size_t MaxOrders>
+inline void take_state(const OscillatorLanes<Real, Orders>& lanes, std::size_t lane,
+                       const OscillatorFilterConfig<Real, MaxOrders>& config,
+                       OscillatorFilterState<Real, MaxOrders>& state) {
+  for (std::size_t i = 0; i < 2 * active_orders(config); ++i) {
+    state.states_Nm[i] = lanes.states_Nm[i][lane];
+    Real& wave = i % 2 == 0 ? state.output[i / 2].cosine : state.output[i / 2].sine;
+    wave = lanes.output[i][lane];
+    for (std::size_t j = 0; j <= i; ++j) {
+      state.covariance_Nm2[packed_index(i, j)] = lanes.covariance_Nm2[packed_index(i, j)][lane];
+    }
+  }
+  state.pending_rotation_rad = lanes.pending_rotation_rad[lane];
+  state.rotated_without_update =
+      lanes.needed_travel_rad[lane] != config.minimum_travel_rad;
+  state.samples_without_update =
+      static_cast<std::uint32_t>(lanes.samples_without_update[lane]);
+  state.last_speed_rad_s = lanes.last_speed_rad_s[lane];
+  state.smoothed_speed_rad_s = lanes.smoothed_speed_rad_s[lane];
+  state.last_torque_Nm = lanes.last_torque_Nm[lane];
+}
+
+/// Adds to a counter that stays at its largest value instead of wrapping.
+constexpr void count_up_by(std::uint32_t& counter, std::size_t events) {
+  const std::size_t room = 0xFFFFFFFFU - counter;
+  counter += static_cast<std::uint32_t>(events < room ? events : room);
+}
+
+/// Adds a lane's counts of `samples` samples to its counters.
+template <class Real, std::size_t Orders>
+inline void take_counts(const OscillatorLanes<Real, Orders>& lanes, std::size_t lane,
+                        std::size_t samples, EventCounters& counters) {
+  count_up_by(counters.samples, samples);
+  if (!lanes.any_count) {
+    return;
+  }
+  for (std::size_t flag = 0; flag < 7; ++flag) {
+    count_up_by(counters.by_bit[lowest_bit(mask(counted_flags[flag]))],
+                static_cast<std::size_t>(lanes.counts[flag][lane]));
+  }
+  count_up_by(counters.faults, static_cast<std::size_t>(lanes.counts[7][lane]));
+}
+
+template <class Real, std::size_t Orders>
+inline void clear_counts(OscillatorLanes<Real, Orders>& lanes) {
+  if (lanes.any_count) {
+    for (auto& row : lanes.counts) {
+      for (Real& count : row) {
+        count = Real(0);
+      }
+    }
+    lanes.any_count = false;
+  }
+}
+
+}  // namespace detail
+
+}  // namespace strainwave
