@@ -22,6 +22,23 @@ struct alignas(64) Tile {
   Real values[tile_samples * block_width<Real>];
 };
 
+/// Arrays of a block's channels that are read or written a tile ahead.  There are more of them than
+/// the processor foresees on its own, and asking for all at once would make it wait.
+template <class Number>
+struct Ahead {
+  static constexpr std::size_t line = 64 / sizeof(Number);
+
+  const Number* rows[block_width<Number>] = {};
+  bool is_on = false;
+
+  /// Asks for one line of a tile for each sample of the tile before it.
+  [[gnu::always_inline]] void ask(std::size_t sample) const {
+#if STRAINWAVE_HAS_LANES
+    __builtin_prefetch(rows[sample % block_width<Number>] + sample / block_width<Number> * line);
+#endif
+  }
+};
+
 namespace detail {
 
 #if STRAINWAVE_HAS_LANES
@@ -144,6 +161,7 @@ inline void scatter(const Real* tile, std::size_t count, Real* const* rows, std:
     }
   }
 }
+
 
 }  // namespace detail
 

@@ -169,6 +169,7 @@ class OscillatorBlockRun {
   void run() {
     for (std::size_t at = 0; const std::size_t count = next_count(at);) {
       gather_tile(at, count);
+      ask_ahead(at + count);
       kernel_(lanes_, tile_);
       scatter_tile(at, count);
       at += count;
@@ -185,11 +186,11 @@ class OscillatorBlockRun {
   /// that have ended read another one's samples and write none.
   [[nodiscard]] std::size_t next_count(std::size_t at) {
     std::size_t live = width;
-    std::size_t count = 0;
+    left_ = 0;
     for (std::size_t lane = 0; lane < width; ++lane) {
       if (is_live(lane, at)) {
         const std::size_t left = block_.channels[lane].sample_count - at;
-        count = live == width || left < count ? left : count;
+        left_ = live == width || left < left_ ? left : left_;
         live = lane;
       }
     }
@@ -202,7 +203,7 @@ class OscillatorBlockRun {
       rows_.torque[lane] = own ? rows_.torque[lane] : nullptr;
       rows_.ripple[lane] = own ? rows_.ripple[lane] : nullptr;
     }
-    return count < tile_samples ? count : tile_samples;
+    return left_ < tile_samples ? left_ : tile_samples;
   }
 
   void gather_tile(std::size_t at, std::size_t count) {
@@ -220,6 +221,18 @@ class OscillatorBlockRun {
              .ripple_stride = has_ripple_ ? width : 0,
              .status = has_status_ ? status_.values : nullptr,
              .sample_count = count};
+  }
+
+  /// The tile after the next one, while this one is computed: memory is that far away.
+  void ask_ahead(std::size_t next) {
+    tile_.ahead = left_ >= 3 * tile_samples ? ahead_ : nullptr;
+    for (std::size_t lane = 0; lane < width && tile_.ahead != nullptr; ++lane) {
+      const std::size_t at = next + tile_samples;
+      ahead_[0].rows[lane] = rows_.measured[lane] + at;
+      ahead_[1].rows[lane] = rows_.speed[lane] + at;
+      const bool is_wanted = rows_.torque[lane] != nullptr;
+      ahead_[2].rows[lane] = (is_wanted ? rows_.torque[lane] : rows_.speed[lane]) + at;
+    }
   }
 
   /// Some channels of a block may have an expected torque and others none.
@@ -277,6 +290,8 @@ class OscillatorBlockRun {
   OscillatorLanes<Real, Orders> lanes_ = {};
   OscillatorTile<Real> tile_ = {};
   Rows rows_ = {};
+  Ahead<Real> ahead_[3];
+  std::size_t left_ = 0;  ///< samples until the next channel ends
   bool has_expected_ = false;
   bool has_torque_ = false;
   bool has_ripple_ = false;

@@ -2,9 +2,9 @@
 /// @file batch_oscillator_kernel.hpp
 /// step() of the published filter on lanes, a tile at a time.
 ///
-/// Included by batch_oscillator.hpp within the namespace of each vector level.  The usual sample,
-/// from which every lane learns and about which nothing is to be said, has no branch taken; the
-/// rest is told apart by masks.
+/// Included by batch_oscillator.hpp within the namespace of each vector level.  Usual samples, from
+/// which every lane learns and about which nothing is to be said, have a loop of their own; the
+/// others are told apart by masks.
 // No guard and no includes: see lanes_each_level.hpp.
 
 #define STRAINWAVE_INLINE [[gnu::always_inline]] inline
@@ -80,63 +80,91 @@ struct OscillatorGroup {
 
   // ---- output row -------------------------------------------------------------------------------
 
-  /// turned() of oscillator_state.hpp.
-  template <std::size_t A, bool Small>
+  /// turned() of oscillator_state.hpp, without its correction of the length.
+  template <std::size_t A, bool Reduced>
   STRAINWAVE_INLINE void turn_order(const Memory& memory, std::size_t lane, L* now) const {
     if constexpr (SecondIsDouble && A == 1) {
       now[2] = fused_minus(now[1], now[1], now[0] * now[0]);
       const L half = now[0] * now[1];
       now[3] = half + half;
     } else {
+      const L before = c[2 * A];
       const L angle_rad = L::load(memory.order[A] + lane) * pending_rad;
-      const CosSin<L> turn = Small ? cos_sin_reduced(angle_rad) : cos_sin_of_radians(angle_rad);
-      const L cosine = fused_minus(c[2 * A + 1], turn.sine, c[2 * A] * turn.cosine);
-      const L sine = fused(c[2 * A], turn.sine, c[2 * A + 1] * turn.cosine);
-      const L length = fused(sine, sine, cosine * cosine);
-      const L scale = fused_minus(length, L(Real(0.5)), L(Real(1.5)));
-      now[2 * A] = scale * cosine;
-      now[2 * A + 1] = scale * sine;
+      const CosSin<L> turn = Reduced ? cos_sin_reduced(angle_rad) : cos_sin_of_radians(angle_rad);
+      now[2 * A] = fused_minus(c[2 * A + 1], turn.sine, before * turn.cosine);
+      now[2 * A + 1] = fused(before, turn.sine, c[2 * A + 1] * turn.cosine);
     }
   }
-  template <bool Small, std::size_t... A>
+  template <bool Reduced, std::size_t... A>
   STRAINWAVE_INLINE void turn_orders(const Memory& memory, std::size_t lane, L* now,
                                      std::index_sequence<A...>) const {
-    (turn_order<A, Small>(memory, lane, now), ...);
-  }
-  STRAINWAVE_INLINE void output_now(const Memory& memory, std::size_t lane, L* now) const {
-    const L largest_rad = L::load(memory.highest_order + lane) * absolute(pending_rad);
-    if ((largest_rad <= L(largest_reduced_rad<Real>)).all()) [[likely]] {
-      turn_orders<true>(memory, lane, now, std::make_index_sequence<Orders>{});
-    } else {
-      turn_orders<false>(memory, lane, now, std::make_index_sequence<Orders>{});
-    }
+    (turn_order<A, Reduced>(memory, lane, now), ...);
   }
 
-  /// Where the mask says so, the output row from here on and no rotation since it.
+  /// Puts the length of the output row back to 1 to first order: rounding would let it drift.  An
+  /// order that a lane does not have stays at 0.
+  template <std::size_t... A>
+  STRAINWAVE_INLINE void correct_length(std::index_sequence<A...>) {
+    (correct_order(c[2 * A], c[2 * A + 1]), ...);
+  }
+  STRAINWAVE_INLINE static void correct_order(L& cosine, L& sine) {
+    const L length = fused(sine, sine, cosine * cosine);
+    const L scale = fused_minus(length, L(Real(0.5)), L(Real(1.5)));
+    cosine = scale * cosine;
+    sine = scale * sine;
+  }
+
+  /// The output row from here on and no rotation since it, for lanes that learned and for those
+  /// whose rotation has become long; what the others wait for.
   template <std::size_t... I>
-  STRAINWAVE_INLINE void take_output(Mask taken, const L* now, std::index_sequence<I...>) {
+  STRAINWAVE_INLINE void take_or_wait(const Memory& memory, std::size_t lane, Mask learned,
+                                      Mask used, const L* now, std::index_sequence<I...>) {
+    constexpr auto most = static_cast<Real>(detail::most_samples_without_update);
+    constexpr auto longest_rad = static_cast<Real>(detail::longest_pending_rotation_rad);
+    const Mask is_long = absolute(pending_rad) > L(longest_rad);
+    const Mask taken = learned | is_long;
     ((c[I] = select(taken, now[I], c[I])), ...);
     pending_rad = select(taken, L(Real(0)), pending_rad);
+    const L counted = samples_without_update + L(Real(1));
+    const L waiting = select(counted > L(most), L(most), counted);
+    samples_without_update =
+        select(learned, L(Real(0)), select(used, samples_without_update, waiting));
+    needed_travel_rad = select(learned, L::load(memory.minimum_travel_rad + lane),
+                               select(is_long, L(Real(0)), needed_travel_rad));
+  }
+
+  STRAINWAVE_INLINE void smooth_speed(const Memory& memory, std::size_t lane) {
+    smoothed_speed_rad_s =
+        smoothed_speed_rad_s +
+        L::load(memory.speed_share + lane) * (last_speed_rad_s - smoothed_speed_rad_s);
   }
 
   // ---- filter -----------------------------------------------------------------------------------
 
-  template <std::size_t... I>
-  STRAINWAVE_INLINE static L product(const L* a, const L* b, L start, std::index_sequence<I...>) {
-    L sum = start;
-    ((sum = fused(a[I], b[I], sum)), ...);
-    return sum;
+  // Sums of products in two chains, of cosines and of sines: a chain waits for each of its products.
+
+  template <std::size_t... A>
+  STRAINWAVE_INLINE static L product(const L* a, const L* b, L start, std::index_sequence<A...>) {
+    L cosines = start;
+    L sines = a[1] * b[1];
+    ((cosines = fused(a[2 * A], b[2 * A], cosines),
+      sines = A == 0 ? sines : fused(a[2 * A + 1], b[2 * A + 1], sines)),
+     ...);
+    return cosines + sines;
   }
   /// Row I of P C'.
-  template <std::size_t I, std::size_t... J>
-  STRAINWAVE_INLINE L projected(const L* row, std::index_sequence<J...>) const {
-    L sum = p[at<I, 0>] * row[0];
-    ((sum = fused(p[at<I, J + 1>], row[J + 1], sum)), ...);
-    return sum;
+  template <std::size_t I, std::size_t... A>
+  STRAINWAVE_INLINE L projected(const L* row, std::index_sequence<A...>) const {
+    L cosines = p[at<I, 0>] * row[0];
+    L sines = p[at<I, 1>] * row[1];
+    ((cosines = A == 0 ? cosines : fused(p[at<I, 2 * A>], row[2 * A], cosines),
+      sines = A == 0 ? sines : fused(p[at<I, 2 * A + 1>], row[2 * A + 1], sines)),
+     ...);
+    return cosines + sines;
   }
   template <std::size_t... I>
   STRAINWAVE_INLINE void project(const L* row, L* pc, std::index_sequence<I...>) const {
-    ((pc[I] = projected<I>(row, std::make_index_sequence<states - 1>{})), ...);
+    ((pc[I] = projected<I>(row, std::make_index_sequence<Orders>{})), ...);
   }
   template <std::size_t I, std::size_t... J>
   STRAINWAVE_INLINE void update_row(L gain, const L* pc, std::index_sequence<J...>) {
@@ -149,15 +177,16 @@ struct OscillatorGroup {
     p[at<I, I>] = p[at<I, I>] + noise_Nm2;
     update_row<I>(gain, pc, std::make_index_sequence<I + 1>{});
   }
-  template <std::size_t... A>
+  template <bool OneSample, std::size_t... A>
   STRAINWAVE_INLINE void update(const Memory& memory, std::size_t lane, const L* pc, L per_variance,
                                 L innovation_Nm, L samples, std::index_sequence<A...>) {
-    ((noise_of<A>(memory, lane, pc, per_variance, innovation_Nm, samples)), ...);
+    (update_order<A, OneSample>(memory, lane, pc, per_variance, innovation_Nm, samples), ...);
   }
-  template <std::size_t A>
-  STRAINWAVE_INLINE void noise_of(const Memory& memory, std::size_t lane, const L* pc,
-                                  L per_variance, L innovation_Nm, L samples) {
-    const L noise_Nm2 = samples * L::load(memory.process_noise_variance_Nm2[A] + lane);
+  template <std::size_t A, bool OneSample>
+  STRAINWAVE_INLINE void update_order(const Memory& memory, std::size_t lane, const L* pc,
+                                      L per_variance, L innovation_Nm, L samples) {
+    const L once_Nm2 = L::load(memory.process_noise_variance_Nm2[A] + lane);
+    const L noise_Nm2 = OneSample ? once_Nm2 : samples * once_Nm2;
     update_state<2 * A>(pc, per_variance, innovation_Nm, noise_Nm2);
     update_state<2 * A + 1>(pc, per_variance, innovation_Nm, noise_Nm2);
   }
@@ -246,110 +275,196 @@ STRAINWAVE_INLINE Lanes<Real> say(const OscillatorEvents<Real>& events, Memory& 
   return status;
 }
 
-/// A tile through one group of lanes, from `lane` on.
+/// An unusual sample takes so many after it along, because going over has its price and unusual
+/// samples come in groups; and the output row's length is corrected as often.
+inline constexpr std::size_t samples_in_a_row = 16;
+
+/// Whether C P C' + R is at least R, and a number: rounding has not cost P its sign.
+template <class Real>
+STRAINWAVE_INLINE LaneMask<Real> is_healthy(Lanes<Real> variance_Nm2, Lanes<Real> noise_Nm2) {
+  return (variance_Nm2 >= noise_Nm2) &
+         (variance_Nm2 <= Lanes<Real>(std::numeric_limits<Real>::max()));
+}
+
+/// What a sample's place in a tile holds, and where its results go.
+template <class Real>
+struct OscillatorPlace {
+  using L = Lanes<Real>;
+  OscillatorTile<Real> tile;
+  std::size_t lane;
+
+  STRAINWAVE_INLINE L torque_Nm(std::size_t k) const {
+    return L::load(tile.measured_torque_Nm + k * block_width<Real> + lane);
+  }
+  STRAINWAVE_INLINE L speed_rad_s(std::size_t k) const {
+    return L::load(tile.motor_speed_rad_s + k * block_width<Real> + lane);
+  }
+  STRAINWAVE_INLINE L expected_Nm(std::size_t k) const {
+    return L::load(tile.expected_torque_Nm + k * tile.expected_stride + lane);
+  }
+  STRAINWAVE_INLINE void put(std::size_t k, L clean_Nm, L ripple_Nm, L status) const {
+    clean_Nm.store(tile.torque_Nm + k * block_width<Real> + lane);
+    ripple_Nm.store(tile.ripple_Nm + k * tile.ripple_stride + lane);
+    if (tile.status != nullptr) {
+      status.store(tile.status + k * block_width<Real> + lane);
+    }
+  }
+};
+
+/// Usual samples from `start` on: every lane learns, and nothing is to be said.  Returns the first
+/// sample that is not so, which has changed nothing.
 template <class Real, std::size_t Orders, bool SecondIsDouble>
-inline void filter_group(OscillatorLanes<Real, Orders>& memory, const OscillatorTile<Real>& tile,
-                         std::size_t lane) {
+[[gnu::noinline]] inline std::size_t filter_usual(OscillatorLanes<Real, Orders>& memory,
+                                const OscillatorTile<Real>& tile, std::size_t lane,
+                                std::size_t start) {
   using Group = OscillatorGroup<Real, Orders, SecondIsDouble>;
   using L = Lanes<Real>;
-  using Mask = LaneMask<Real>;
-  constexpr auto by_state = std::make_index_sequence<Group::states>{};
   constexpr auto by_order = std::make_index_sequence<Orders>{};
+  constexpr auto by_state = std::make_index_sequence<Group::states>{};
+  const OscillatorPlace<Real> place{tile, lane};
   const L largest_torque_Nm = Real(largest_usable_torque_Nm);
   const L noise_Nm2 = L::load(memory.measurement_noise_variance_Nm2 + lane);
+  const L minimum_travel_rad = L::load(memory.minimum_travel_rad + lane);
+  const L usual_order = L::load(memory.usual_order + lane);
   Group group;
   group.load(memory, lane);
-  for (std::size_t k = 0; k < tile.sample_count; ++k) {
-    const L torque_Nm = L::load(tile.measured_torque_Nm + k * block_width<Real> + lane);
-    const L speed_rad_s = L::load(tile.motor_speed_rad_s + k * block_width<Real> + lane);
-    const L expected_Nm = L::load(tile.expected_torque_Nm + k * tile.expected_stride + lane);
-    OscillatorEvents<Real> events;
+  const bool is_usual =
+      ((group.samples_without_update <= L(Real(0))) &
+       (group.needed_travel_rad >= minimum_travel_rad) &
+       (absolute(usual_order * group.pending_rad) <= L(detail::largest_reduced_rad<Real>)))
+          .all();
+  const Ahead<Real>* const ahead = lane == 0 ? tile.ahead : nullptr;
+  const bool any_limit = memory.any_variance_limit;
+  std::size_t k = start;
+  for (; k < place.tile.sample_count && is_usual; ++k) {
+    const L torque_Nm = place.torque_Nm(k);
+    const L speed_rad_s = place.speed_rad_s(k);
+    const L expected_Nm = place.expected_Nm(k);
+    const L rotation_rad = speed_rad_s * L::load(memory.sample_period_s + lane);
+    if (ahead != nullptr) {
+      ahead[0].ask(k);
+      ahead[1].ask(k);
+      ahead[2].ask(k);
+    }
+    const auto usable =
+        (absolute(torque_Nm) <= largest_torque_Nm) & (absolute(expected_Nm) <= largest_torque_Nm) &
+        (absolute(group.pending_rad) >= minimum_travel_rad) &
+        (absolute(group.smoothed_speed_rad_s) >= L::load(memory.minimum_speed_rad_s + lane)) &
+        (absolute(usual_order * rotation_rad) <= L(detail::largest_reduced_rad<Real>));
+    if (!usable.all()) [[unlikely]] {
+      break;
+    }
+    group.template turn_orders<true>(memory, lane, group.c, by_order);
+    L pc[Group::states];
+    group.project(group.c, pc, by_state);
+    const L variance_Nm2 = Group::product(pc, group.c, noise_Nm2, by_order);
+    if (!is_healthy(variance_Nm2, noise_Nm2).all()) [[unlikely]] {
+      // The output row is that of this sample already, and the lane has travelled.
+      group.pending_rad = Real(0);
+      group.needed_travel_rad = Real(0);
+      break;
+    }
+    const L ripple_Nm = Group::product(group.c, group.x, Real(0), by_order);
+    const L clean_Nm = torque_Nm - ripple_Nm;
+    group.template update<true>(memory, lane, pc, L(Real(1)) / variance_Nm2,
+                                clean_Nm - expected_Nm, L(Real(1)), by_order);
+    group.last_torque_Nm = clean_Nm;
+    group.last_speed_rad_s = speed_rad_s;
+    group.pending_rad = rotation_rad;
+    group.smooth_speed(memory, lane);
+    if (k % samples_in_a_row == 0) {
+      group.correct_length(by_order);
+    }
+    place.put(k, clean_Nm, ripple_Nm, Real(0));
+    if (any_limit) {
+      const auto beyond = group.beyond_limit(memory, lane, by_order);
+      if (beyond.any()) [[unlikely]] {
+        group.limit_variance(memory, lane, beyond, by_order);
+        L status = Real(0);
+        raise(beyond, 3, memory.counts, lane, status);
+        memory.any_count = true;
+        place.put(k, clean_Nm, ripple_Nm, status);
+      }
+    }
+  }
+  group.correct_length(by_order);
+  group.store(memory, lane);
+  return k;
+}
 
+/// Samples that some lane does not learn from, or about which something is to be said.
+template <class Real, std::size_t Orders, bool SecondIsDouble>
+[[gnu::noinline]] inline void filter_any(OscillatorLanes<Real, Orders>& memory, const OscillatorTile<Real>& tile,
+                       std::size_t lane, std::size_t start, std::size_t end) {
+  using Group = OscillatorGroup<Real, Orders, SecondIsDouble>;
+  using L = Lanes<Real>;
+  constexpr auto by_order = std::make_index_sequence<Orders>{};
+  constexpr auto by_state = std::make_index_sequence<Group::states>{};
+  const OscillatorPlace<Real> place{tile, lane};
+  const L largest_torque_Nm = Real(largest_usable_torque_Nm);
+  const L noise_Nm2 = L::load(memory.measurement_noise_variance_Nm2 + lane);
+  const L period_s = L::load(memory.sample_period_s + lane);
+  Group group;
+  group.load(memory, lane);
+  for (std::size_t k = start; k < end; ++k) {
+    OscillatorEvents<Real> events;
+    const L torque_Nm = place.torque_Nm(k);
+    const L expected_Nm = place.expected_Nm(k);
     L now[Group::states];
-    group.output_now(memory, lane, now);
-    const L ripple_Nm = Group::product(now, group.x, Real(0), by_state);
+    group.template turn_orders<false>(memory, lane, now, by_order);
+    const L ripple_Nm = Group::product(now, group.x, Real(0), by_order);
     events.torque_usable = absolute(torque_Nm) <= largest_torque_Nm;
     events.expected_usable = absolute(expected_Nm) <= largest_torque_Nm;
     events.moving = (absolute(group.pending_rad) >= group.needed_travel_rad) &
                     (absolute(group.smoothed_speed_rad_s) >=
                      L::load(memory.minimum_speed_rad_s + lane));
-    const Mask learned = events.torque_usable & events.expected_usable & events.moving;
-    const bool all_learned = learned.all();
-    L clean_Nm = torque_Nm - ripple_Nm;
-    L innovation_Nm = clean_Nm - expected_Nm;
-    L samples = group.samples_without_update + L(Real(1));
-    if (all_learned) [[likely]] {
-      for (std::size_t i = 0; i < Group::states; ++i) {
-        group.c[i] = now[i];
-      }
-      group.pending_rad = Real(0);
-      group.samples_without_update = Real(0);
-      group.needed_travel_rad = L::load(memory.minimum_travel_rad + lane);
-    } else {
-      clean_Nm = select(events.torque_usable, clean_Nm, group.last_torque_Nm);
-      innovation_Nm = select(learned, innovation_Nm, L(Real(0)));
-      const Mask is_long =
-          absolute(group.pending_rad) > L(static_cast<Real>(detail::longest_pending_rotation_rad));
-      group.take_output(learned | is_long, now, by_state);
-      const L waiting = select(events.torque_usable & events.expected_usable,
-                               group.samples_without_update, samples);
-      constexpr auto most = static_cast<Real>(detail::most_samples_without_update);
-      group.samples_without_update =
-          select(learned, L(Real(0)), select(waiting > L(most), L(most), waiting));
-      group.needed_travel_rad =
-          select(learned, L::load(memory.minimum_travel_rad + lane),
-                 select(is_long, L(Real(0)), group.needed_travel_rad));
-    }
-    group.last_torque_Nm = clean_Nm;
+    const auto used = events.torque_usable & events.expected_usable;
+    const auto learned = used & events.moving;
+    group.last_torque_Nm = select(events.torque_usable, torque_Nm - ripple_Nm, group.last_torque_Nm);
 
     L pc[Group::states];
     group.project(now, pc, by_state);
-    const L variance_Nm2 = Group::product(pc, now, noise_Nm2, by_state);
-    const Mask healthy = (variance_Nm2 >= noise_Nm2) &
-                         (variance_Nm2 <= L(std::numeric_limits<Real>::max()));
-    L per_variance = L(Real(1)) / variance_Nm2;
-    events.reset = learned & !healthy;
-    if (!(all_learned && healthy.all())) [[unlikely]] {
-      const Mask updated = learned & healthy;
-      Group::keep(updated, pc, by_state);
-      per_variance = select(updated, per_variance, L(Real(0)));
-      samples = select(updated, samples, L(Real(0)));
-      if (events.reset.any()) {
-        group.reset_covariance(memory, lane, events.reset, by_state);
-      }
-    }
-    group.update(memory, lane, pc, per_variance, innovation_Nm, samples, by_order);
-    events.limited = Mask{};
-    if (memory.any_variance_limit) {
-      events.limited = group.beyond_limit(memory, lane, by_order) & learned & healthy;
-      if (events.limited.any()) [[unlikely]] {
-        group.limit_variance(memory, lane, events.limited, by_order);
-      }
-    }
+    const L variance_Nm2 = Group::product(pc, now, noise_Nm2, by_order);
+    const auto updated = learned & is_healthy(variance_Nm2, noise_Nm2);
+    events.reset = learned & !updated;
+    const L samples = group.samples_without_update + L(Real(1));
+    group.keep(updated, pc, by_state);
+    group.reset_covariance(memory, lane, events.reset, by_state);
+    group.template update<false>(
+        memory, lane, pc, select(updated, L(Real(1)) / variance_Nm2, L(Real(0))),
+        select(learned, torque_Nm - expected_Nm - ripple_Nm, L(Real(0))),
+        select(updated, samples, L(Real(0))), by_order);
+    events.limited = group.beyond_limit(memory, lane, by_order) & updated;
+    group.limit_variance(memory, lane, events.limited, by_order);
+    group.take_or_wait(memory, lane, learned, used, now, by_state);
 
-    const L highest_order = L::load(memory.highest_order + lane);
-    const L period_s = L::load(memory.sample_period_s + lane);
-    const L turned_rad = absolute(highest_order * (speed_rad_s * period_s));
+    const L speed_rad_s = place.speed_rad_s(k);
+    const L turned_rad =
+        absolute(L::load(memory.highest_order + lane) * (speed_rad_s * period_s));
     events.speed_usable = turned_rad <= L(static_cast<Real>(largest_rotation_rad));
     events.above_nyquist = events.speed_usable & (turned_rad > L(pi<Real>));
     group.last_speed_rad_s = select(events.speed_usable, speed_rad_s, group.last_speed_rad_s);
     group.pending_rad = group.pending_rad + group.last_speed_rad_s * period_s;
-    group.smoothed_speed_rad_s =
-        group.smoothed_speed_rad_s + L::load(memory.speed_share + lane) *
-                                         (group.last_speed_rad_s - group.smoothed_speed_rad_s);
-
-    clean_Nm.store(tile.torque_Nm + k * block_width<Real> + lane);
-    ripple_Nm.store(tile.ripple_Nm + k * tile.ripple_stride + lane);
-    L status = Real(0);
-    if (!(all_learned && healthy.all() && (turned_rad <= L(pi<Real>)).all() &&
-          !events.limited.any())) [[unlikely]] {
-      status = say<Real>(events, memory, lane);
-    }
-    if (tile.status != nullptr) {
-      status.store(tile.status + k * block_width<Real> + lane);
-    }
+    group.smooth_speed(memory, lane);
+    place.put(k, group.last_torque_Nm, ripple_Nm, say<Real>(events, memory, lane));
   }
+  group.correct_length(by_order);
   group.store(memory, lane);
+}
+
+/// A tile through one group of lanes, from `lane` on.
+template <class Real, std::size_t Orders, bool SecondIsDouble>
+inline void filter_group(OscillatorLanes<Real, Orders>& memory, const OscillatorTile<Real>& tile,
+                         std::size_t lane) {
+  for (std::size_t k = 0; k < tile.sample_count;) {
+    k = filter_usual<Real, Orders, SecondIsDouble>(memory, tile, lane, k);
+    const std::size_t left = tile.sample_count - k;
+    const std::size_t end = k + (left < samples_in_a_row ? left : samples_in_a_row);
+    if (k < end) {
+      filter_any<Real, Orders, SecondIsDouble>(memory, tile, lane, k, end);
+    }
+    k = end;
+  }
 }
 
 /// A tile through all lanes of a block.

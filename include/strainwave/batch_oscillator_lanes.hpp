@@ -28,10 +28,12 @@ struct alignas(64) OscillatorLanes {
   Row initial_variance_Nm2[Orders];  ///< 0 for an order that the lane does not have
   Row sample_period_s;
   Row highest_order;
+  /// Times the rotation from one sample to the next: where this stays below largest_reduced_rad no
+  /// angle has to be reduced and no order turns half a cycle.
+  Row usual_order;
   Row minimum_travel_rad;
   Row minimum_speed_rad_s;
   Row speed_share;  ///< of a sample in the smoothed speed
-  bool any_variance_limit = false;
 
   Row states_Nm[states];
   Row covariance_Nm2[states * (states + 1) / 2];
@@ -46,6 +48,8 @@ struct alignas(64) OscillatorLanes {
   /// How often each flag of counted_flags was raised since the counts were taken; then samples with
   /// a fault.
   Row counts[8];
+
+  bool any_variance_limit = false;
   bool any_count = false;
 };
 
@@ -61,6 +65,7 @@ struct OscillatorTile {
   std::size_t ripple_stride = block_width<Real>;
   Real* status = nullptr;  ///< as numbers, which hold them exactly; null where not wanted
   std::size_t sample_count = 0;
+  const Ahead<Real>* ahead = nullptr;  ///< measured torque, speed and clean torque; null: none
 };
 
 /// Flags that the published filter raises, as counted in OscillatorLanes.
@@ -73,6 +78,22 @@ inline constexpr StatusFlag counted_flags[7] = {StatusFlag::torque_not_finite,
                                                 StatusFlag::order_above_nyquist};
 
 namespace detail {
+
+/// Largest |angle| whose cosine and sine need no reduction, rad: an eighth of a turn.
+template <class Real>
+inline constexpr Real largest_reduced_rad = Real(0.785398);
+
+/// See OscillatorLanes::usual_order.  The second order costs no cosine where it is twice the first.
+template <class Real, std::size_t MaxOrders>
+[[nodiscard]] constexpr Real usual_order(const OscillatorFilterConfig<Real, MaxOrders>& config) {
+  Real usual = highest_order(config) * (largest_reduced_rad<Real> / pi<Real>);
+  for (std::size_t a = 0; a < active_orders(config); ++a) {
+    const Real order = to_real<Real>(config.orders[a]);
+    const bool is_double = a == 1 && half_of(config, 1) == 0;
+    usual = order > usual && !is_double ? order : usual;
+  }
+  return usual;
+}
 
 /// One lane's configuration.
 template <class Real, std::size_t Orders, std::size_t MaxOrders>
@@ -92,6 +113,7 @@ inline void put_config(OscillatorLanes<Real, Orders>& lanes, std::size_t lane,
   lanes.measurement_noise_variance_Nm2[lane] = config.measurement_noise_variance_Nm2;
   lanes.sample_period_s[lane] = config.sample_period_s;
   lanes.highest_order[lane] = highest_order(config);
+  lanes.usual_order[lane] = usual_order(config);
   lanes.minimum_travel_rad[lane] = config.minimum_travel_rad;
   lanes.minimum_speed_rad_s[lane] = config.minimum_speed_rad_s;
   lanes.speed_share[lane] =

@@ -244,10 +244,6 @@ STRAINWAVE_INLINE CosSin<Lanes<Real>> cos_sin_reduced(Lanes<Real> angle_rad) {
   return {fused_minus(square, cosine, L(Real(1))), fused(angle_rad * square, sine, angle_rad)};
 }
 
-/// Largest |angle| that cos_sin_reduced() takes, rad.
-template <class Real>
-inline constexpr Real largest_reduced_rad = Real(0.785398);
-
 /// Cosine and sine of angles of up to largest_reducible_angle_rad; anything for larger ones.
 template <class Real>
 STRAINWAVE_INLINE CosSin<Lanes<Real>> cos_sin_of_radians(Lanes<Real> angle_rad) {

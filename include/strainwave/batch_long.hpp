@@ -1,0 +1,293 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file batch_long.hpp
+/// One long log on lanes and threads: time chunks, each warmed up on the samples before it.
+///
+/// A Kalman filter forgets where it started.  A chunk starts early, by several memories of the
+/// filter; at each boundary its state is held against the one in which the chunk before ended, and
+/// a chunk that differs too much is filtered again in sequence.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "strainwave/batch.hpp"
+
+namespace strainwave {
+
+struct LongOptions {
+  BatchOptions batch = {};
+  bool in_sequence = false;  ///< exactly as step() does it, sample after sample
+  /// Memories of the filter that a chunk is warmed up by; what is left of a wrong start falls by
+  /// a factor of e with each.
+  double warm_up_memories = 16.0;
+  /// Difference of the predicted ripple at a boundary beyond which the chunk after it is filtered
+  /// again in sequence.
+  double tolerance_Nm = 1e-4;
+  /// Likewise of any single state.  A state that is hardly seen may differ more: what matters of it
+  /// is in the ripple.
+  double state_tolerance_Nm = 1e-2;
+};
+
+/// What process_long() did, and how far from a filter in sequence it came out.
+struct LongReport {
+  std::size_t chunk_count = 1;      ///< 1: in sequence
+  std::size_t repeated_chunks = 0;  ///< filtered again in sequence, because they differed too much
+  std::size_t warm_up_samples = 0;  ///< filtered twice
+  /// Differences at the boundaries that were kept; a repeated chunk begins without one.
+  double largest_ripple_difference_Nm = 0.0;
+  double rms_ripple_difference_Nm = 0.0;
+  double largest_state_difference_Nm = 0.0;
+};
+
+namespace detail {
+
+/// How long the filter remembers: samples that it learns from, and travelled angle.
+struct OscillatorMemory {
+  double samples = 0.0;
+  double travel_rad = 0.0;
+};
+
+/// A state of variance q a sample, seen half of the time with noise R, is forgotten at the rate
+/// sqrt(q / 2 R) a sample (the steady state of its Riccati equation).  Orders are told apart, from
+/// each other and from a constant, within a radian of their difference.
+template <class Real, std::size_t MaxOrders>
+[[nodiscard]] inline OscillatorMemory memory_of(
+    const OscillatorFilterConfig<Real, MaxOrders>& config) {
+  OscillatorMemory memory;
+  for (std::size_t a = 0; a < active_orders(config); ++a) {
+    const auto noise_Nm2 = static_cast<double>(config.process_noise_variance_Nm2[a]);
+    const auto measured_Nm2 = static_cast<double>(config.measurement_noise_variance_Nm2);
+    memory.samples = std::max(memory.samples,
+                              noise_Nm2 > 0.0 ? square_root(2.0 * measured_Nm2 / noise_Nm2)
+                                              : std::numeric_limits<double>::infinity());
+    const auto order = to_real<double>(config.orders[a]);
+    memory.travel_rad = std::max(memory.travel_rad, 1.0 / order);
+    for (std::size_t b = 0; b < a; ++b) {
+      const double difference = absolute(order - to_real<double>(config.orders[b]));
+      memory.travel_rad = std::max(memory.travel_rad, 1.0 / difference);
+    }
+  }
+  memory.samples = std::max(memory.samples, 1.0);
+  return memory;
+}
+
+/// Samples before `start` from which a filter has learned enough; `start` where the log begins
+/// before that.  Standstill and unusable samples teach nothing and are passed over.
+template <class Real, std::size_t MaxOrders>
+[[nodiscard]] inline std::size_t warm_up_before(
+    const OscillatorFilterConfig<Real, MaxOrders>& config, const OscillatorChannel<Real>& channel,
+    std::size_t start, double memories) {
+  const OscillatorMemory memory = memory_of(config);
+  double samples = 0.0;
+  double travel_rad = 0.0;
+  std::size_t k = start;
+  while (k > 0 &&
+         (samples < memories * memory.samples || travel_rad < memories * memory.travel_rad)) {
+    --k;
+    const Real speed_rad_s = absolute(channel.motor_speed_rad_s[k]);
+    if (speed_rad_s <= std::numeric_limits<Real>::max() &&
+        speed_rad_s >= config.minimum_speed_rad_s &&
+        is_usable_torque(channel.measured_torque_Nm[k])) {
+      samples += 1.0;
+      travel_rad += static_cast<double>(speed_rad_s * config.sample_period_s);
+    }
+  }
+  return start - k;
+}
+
+/// The part [start, start + count) of a channel.
+template <class Real>
+[[nodiscard]] inline OscillatorChannel<Real> part_of(const OscillatorChannel<Real>& channel,
+                                                     std::size_t start, std::size_t count) {
+  const auto from = [start](auto* array) { return array == nullptr ? nullptr : array + start; };
+  return {.sample_count = count,
+          .measured_torque_Nm = from(channel.measured_torque_Nm),
+          .motor_speed_rad_s = from(channel.motor_speed_rad_s),
+          .expected_torque_Nm = from(channel.expected_torque_Nm),
+          .torque_Nm = from(channel.torque_Nm),
+          .ripple_Nm = from(channel.ripple_Nm),
+          .status = from(channel.status)};
+}
+
+/// A chunk of a long log.
+template <class Real, std::size_t MaxOrders>
+struct Chunk {
+  std::size_t start = 0;
+  std::size_t count = 0;
+  std::size_t warm_up = 0;
+  OscillatorFilterState<Real, MaxOrders> began;
+  OscillatorFilterState<Real, MaxOrders> ended;
+};
+
+/// Chunks of about equal length.  Where a warm-up would take longer than half of a chunk there is
+/// no boundary: nothing would be won.
+template <class Real, std::size_t MaxOrders>
+[[nodiscard]] inline std::vector<Chunk<Real, MaxOrders>> chunks_of(
+    const OscillatorFilterConfig<Real, MaxOrders>& config, const OscillatorChannel<Real>& channel,
+    std::size_t count, double memories) {
+  std::vector<Chunk<Real, MaxOrders>> chunks(1);
+  // Whole lines of the cache, and an odd number of them, so that chunks do not meet in one set.
+  const std::size_t line = block_width<Real>;
+  const std::size_t length = (channel.sample_count / (count * line) | 1U) * line;
+  for (std::size_t start = length; start < channel.sample_count; start += length) {
+    const std::size_t warm_up = warm_up_before(config, channel, start, memories);
+    if (warm_up <= length / 2) {
+      chunks.back().count = start - chunks.back().start;
+      chunks.push_back({.start = start, .warm_up = warm_up});
+    }
+  }
+  chunks.back().count = channel.sample_count - chunks.back().start;
+  return chunks;
+}
+
+/// How far two states of the same filter lie apart, in the paper's frame.
+struct StateDifference {
+  double ripple_Nm = 0.0;
+  double state_Nm = 0.0;  ///< of the state that differs most
+};
+
+template <class Real, std::size_t MaxOrders>
+[[nodiscard]] inline StateDifference difference_of(
+    const OscillatorFilterConfig<Real, MaxOrders>& config,
+    const OscillatorFilterState<Real, MaxOrders>& a,
+    const OscillatorFilterState<Real, MaxOrders>& b) {
+  const auto first = predicted(config, a);
+  const auto second = predicted(config, b);
+  StateDifference difference;
+  for (std::size_t i = 0; i < 2 * active_orders(config); ++i) {
+    const auto apart_Nm =
+        static_cast<double>(first.states_Nm[i]) - static_cast<double>(second.states_Nm[i]);
+    difference.ripple_Nm += i % 2 == 0 ? apart_Nm : 0.0;
+    difference.state_Nm = std::max(difference.state_Nm, absolute(apart_Nm));
+  }
+  difference.ripple_Nm = absolute(difference.ripple_Nm);
+  return difference;
+}
+
+/// A block of chunks: warmed up without a result, then filtered.
+template <class Real, std::size_t MaxOrders>
+inline void filter_chunks(const OscillatorFilterConfig<Real, MaxOrders>& config,
+                          const OscillatorChannel<Real>& channel, VectorLevel level,
+                          Chunk<Real, MaxOrders>* chunks, std::size_t count) {
+  OscillatorBlock<Real, MaxOrders> block;
+  for (std::size_t lane = 0; lane < count; ++lane) {
+    Chunk<Real, MaxOrders>& chunk = chunks[lane];
+    block.configs[lane] = &config;
+    block.states[lane] = &chunk.began;
+    block.channels[lane] = part_of(channel, chunk.start - chunk.warm_up, chunk.warm_up);
+    block.channels[lane].torque_Nm = nullptr;
+    block.channels[lane].ripple_Nm = nullptr;
+    block.channels[lane].status = nullptr;
+  }
+  filter_block(kind_of(config), level, block);
+  for (std::size_t lane = 0; lane < count; ++lane) {
+    Chunk<Real, MaxOrders>& chunk = chunks[lane];
+    chunk.began.counters = {};
+    chunk.ended = chunk.began;
+    block.states[lane] = &chunk.ended;
+    block.channels[lane] = part_of(channel, chunk.start, chunk.count);
+  }
+  filter_block(kind_of(config), level, block);
+}
+
+/// Adds the counts of a part of a recording.
+constexpr void add_counts(EventCounters& counters, const EventCounters& of_part) {
+  count_up_by(counters.samples, of_part.samples);
+  count_up_by(counters.faults, of_part.faults);
+  for (std::size_t bit = 0; bit < 32; ++bit) {
+    count_up_by(counters.by_bit[bit], of_part.by_bit[bit]);
+  }
+}
+
+/// Holds each chunk's beginning against the end of the one before, and filters it again where they
+/// differ too much.
+template <class Real, std::size_t MaxOrders>
+inline LongReport join_chunks(const OscillatorFilterConfig<Real, MaxOrders>& config,
+                              const OscillatorChannel<Real>& channel, const LongOptions& options,
+                              std::vector<Chunk<Real, MaxOrders>>& chunks) {
+  LongReport report;
+  report.chunk_count = chunks.size();
+  double squares_Nm2 = 0.0;
+  for (std::size_t i = 1; i < chunks.size(); ++i) {
+    Chunk<Real, MaxOrders>& chunk = chunks[i];
+    report.warm_up_samples += chunk.warm_up;
+    const StateDifference apart = difference_of(config, chunk.began, chunks[i - 1].ended);
+    if (!(apart.ripple_Nm <= options.tolerance_Nm &&
+          apart.state_Nm <= options.state_tolerance_Nm)) {
+      ++report.repeated_chunks;
+      chunk.ended = chunks[i - 1].ended;
+      chunk.ended.counters = {};
+      filter_one(config, chunk.ended, part_of(channel, chunk.start, chunk.count));
+      continue;
+    }
+    report.largest_ripple_difference_Nm =
+        std::max(report.largest_ripple_difference_Nm, apart.ripple_Nm);
+    report.largest_state_difference_Nm =
+        std::max(report.largest_state_difference_Nm, apart.state_Nm);
+    squares_Nm2 += apart.ripple_Nm * apart.ripple_Nm;
+  }
+  const std::size_t kept = chunks.size() - 1 - report.repeated_chunks;
+  if (kept > 0) {
+    report.rms_ripple_difference_Nm = square_root(squares_Nm2 / static_cast<double>(kept));
+  }
+  return report;
+}
+
+/// Blocks for each thread: threads that were held up leave work to the others.
+inline constexpr std::size_t blocks_per_thread = 2;
+
+/// How many chunks a log is cut into; 1 where it is filtered in sequence.
+template <class Real, std::size_t MaxOrders>
+[[nodiscard]] inline std::size_t chunk_count_for(
+    const OscillatorFilterConfig<Real, MaxOrders>& config, const OscillatorChannel<Real>& channel,
+    const LongOptions& options) {
+  if (options.in_sequence || options.batch.level == VectorLevel::one_by_one ||
+      kind_of(config).orders == 0) {
+    return 1;
+  }
+  const std::size_t threads = std::max<std::size_t>(options.batch.thread_count, 1);
+  const std::size_t most = channel.sample_count / (2 * tile_samples);
+  return std::min(block_width<Real> * blocks_per_thread * threads, most);
+}
+
+}  // namespace detail
+
+/// Filters one long log.  The state goes on as after step() with the last sample.
+template <class Real, std::size_t MaxOrders>
+LongReport process_long(const OscillatorFilterConfig<Real, MaxOrders>& config,
+                        OscillatorFilterState<Real, MaxOrders>& state,
+                        const OscillatorChannel<Real>& channel, const LongOptions& options = {}) {
+  const std::size_t count = detail::chunk_count_for(config, channel, options);
+  std::vector<detail::Chunk<Real, MaxOrders>> chunks;
+  if (count > 1) {
+    chunks = detail::chunks_of(config, channel, count, options.warm_up_memories);
+  }
+  if (chunks.size() < 2) {
+    detail::filter_one(config, state, channel);
+    return {};
+  }
+  for (auto& chunk : chunks) {
+    // A warm-up that begins with the log begins with its state.
+    chunk.began = chunk.warm_up == chunk.start ? state : initial_state(config);
+  }
+  constexpr std::size_t width = block_width<Real>;
+  const std::size_t blocks = (chunks.size() + width - 1) / width;
+  detail::for_each_part(blocks, options.batch.thread_count, [&](std::size_t block) {
+    const std::size_t first = block * width;
+    detail::filter_chunks(config, channel, options.batch.level, chunks.data() + first,
+                          std::min(width, chunks.size() - first));
+  });
+  const LongReport report = detail::join_chunks(config, channel, options, chunks);
+  EventCounters counters = state.counters;
+  for (const auto& chunk : chunks) {
+    detail::add_counts(counters, chunk.ended.counters);
+  }
+  state = chunks.back().ended;
+  state.counters = counters;
+  return report;
+}
+
+}  // namespace strainwave
