@@ -162,7 +162,6 @@ inline void scatter(const Real* tile, std::size_t count, Real* const* rows, std:
   }
 }
 
-
 }  // namespace detail
 
 }  // namespace strainwave

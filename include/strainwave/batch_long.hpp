@@ -60,9 +60,9 @@ template <class Real, std::size_t MaxOrders>
   for (std::size_t a = 0; a < active_orders(config); ++a) {
     const auto noise_Nm2 = static_cast<double>(config.process_noise_variance_Nm2[a]);
     const auto measured_Nm2 = static_cast<double>(config.measurement_noise_variance_Nm2);
-    memory.samples = std::max(memory.samples,
-                              noise_Nm2 > 0.0 ? square_root(2.0 * measured_Nm2 / noise_Nm2)
-                                              : std::numeric_limits<double>::infinity());
+    memory.samples =
+        std::max(memory.samples, noise_Nm2 > 0.0 ? square_root(2.0 * measured_Nm2 / noise_Nm2)
+                                                 : std::numeric_limits<double>::infinity());
     const auto order = to_real<double>(config.orders[a]);
     memory.travel_rad = std::max(memory.travel_rad, 1.0 / order);
     for (std::size_t b = 0; b < a; ++b) {
@@ -106,6 +106,7 @@ template <class Real>
   return {.sample_count = count,
           .measured_torque_Nm = from(channel.measured_torque_Nm),
           .motor_speed_rad_s = from(channel.motor_speed_rad_s),
+          .motor_angle_rad = from(channel.motor_angle_rad),
           .expected_torque_Nm = from(channel.expected_torque_Nm),
           .torque_Nm = from(channel.torque_Nm),
           .ripple_Nm = from(channel.ripple_Nm),
@@ -136,7 +137,9 @@ template <class Real, std::size_t MaxOrders>
     const std::size_t warm_up = warm_up_before(config, channel, start, memories);
     if (warm_up <= length / 2) {
       chunks.back().count = start - chunks.back().start;
-      chunks.push_back({.start = start, .warm_up = warm_up});
+      chunks.emplace_back();
+      chunks.back().start = start;
+      chunks.back().warm_up = warm_up;
     }
   }
   chunks.back().count = channel.sample_count - chunks.back().start;

@@ -27,7 +27,8 @@ template <class Real>
 struct OscillatorChannel {
   std::size_t sample_count = 0;
   const Real* measured_torque_Nm = nullptr;
-  const Real* motor_speed_rad_s = nullptr;
+  const Real* motor_speed_rad_s = nullptr;   ///< needed with RotationSource::speed
+  const double* motor_angle_rad = nullptr;   ///< needed with RotationSource::angle
   const Real* expected_torque_Nm = nullptr;  ///< null: 0 throughout
   Real* torque_Nm = nullptr;                 ///< measured minus predicted ripple; null: not wanted
   Real* ripple_Nm = nullptr;                 ///< null: not wanted
@@ -65,7 +66,7 @@ template <class Real, std::size_t Orders, bool SecondIsDouble>
 }
 
 /// Most orders of a filter that runs on lanes.
-inline constexpr std::size_t most_lane_orders = 8;
+inline constexpr std::size_t most_lane_orders = 5;
 
 /// What kernel a filter needs.
 struct OscillatorKind {
@@ -113,15 +114,21 @@ struct OscillatorBlock {
   OscillatorChannel<Real> channels[width] = {};
 };
 
-/// One channel at a time through step().
+/// One channel through step(): what has no kernel, and what must be exactly so.
 template <class Real, std::size_t MaxOrders>
 inline void filter_one(const OscillatorFilterConfig<Real, MaxOrders>& config,
                        OscillatorFilterState<Real, MaxOrders>& state,
                        const OscillatorChannel<Real>& channel) {
+  const bool by_angle = config.rotation_source == RotationSource::angle;
   OscillatorSample<Real> sample;
   for (std::size_t k = 0; k < channel.sample_count; ++k) {
     sample.measured_torque_Nm = channel.measured_torque_Nm[k];
-    sample.motor_speed_rad_s = channel.motor_speed_rad_s[k];
+    if (!by_angle) {
+      sample.motor_speed_rad_s = channel.motor_speed_rad_s[k];
+    } else if (sample.phase_valid = is_representable_angle(channel.motor_angle_rad[k]);
+               sample.phase_valid) {
+      sample.motor_phase = phase_from_radians(channel.motor_angle_rad[k]);
+    }
     sample.expected_torque_Nm =
         channel.expected_torque_Nm == nullptr ? Real(0) : channel.expected_torque_Nm[k];
     const OscillatorReading<Real> reading = step(config, state, sample);
@@ -143,8 +150,7 @@ class OscillatorBlockRun {
  public:
   static constexpr std::size_t width = block_width<Real>;
 
-  OscillatorBlockRun(const OscillatorBlock<Real, MaxOrders>& block,
-                     TileKernel<Real, Orders> kernel)
+  OscillatorBlockRun(const OscillatorBlock<Real, MaxOrders>& block, TileKernel<Real, Orders> kernel)
       : block_(block), kernel_(kernel) {
     std::size_t known = 0;
     while (block.configs[known] == nullptr) {

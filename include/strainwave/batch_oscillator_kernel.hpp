@@ -7,7 +7,11 @@
 /// others are told apart by masks.
 // No guard and no includes: see lanes_each_level.hpp.
 
-#define STRAINWAVE_INLINE [[gnu::always_inline]] inline
+// Without the sanitizers: they would take minutes to compile.  What a kernel reads and writes is the
+// tile and the block, and nothing in it depends on values.
+#define STRAINWAVE_INLINE [[gnu::always_inline, gnu::no_sanitize("undefined")]] inline
+#define STRAINWAVE_KERNEL \
+  [[gnu::noinline, gnu::no_sanitize("address"), gnu::no_sanitize("undefined")]] inline
 
 /// What has to be said about a sample, lane by lane.
 template <class Real>
@@ -134,14 +138,14 @@ struct OscillatorGroup {
   }
 
   STRAINWAVE_INLINE void smooth_speed(const Memory& memory, std::size_t lane) {
-    smoothed_speed_rad_s =
-        smoothed_speed_rad_s +
-        L::load(memory.speed_share + lane) * (last_speed_rad_s - smoothed_speed_rad_s);
+    smoothed_speed_rad_s = smoothed_speed_rad_s + L::load(memory.speed_share + lane) *
+                                                      (last_speed_rad_s - smoothed_speed_rad_s);
   }
 
   // ---- filter -----------------------------------------------------------------------------------
 
-  // Sums of products in two chains, of cosines and of sines: a chain waits for each of its products.
+  // Sums of products in two chains, of cosines and of sines: a chain waits for each of its
+  // products.
 
   template <std::size_t... A>
   STRAINWAVE_INLINE static L product(const L* a, const L* b, L start, std::index_sequence<A...>) {
@@ -196,9 +200,9 @@ struct OscillatorGroup {
   template <std::size_t I, std::size_t... J>
   STRAINWAVE_INLINE void reset_row(const Memory& memory, std::size_t lane, Mask reset,
                                    std::index_sequence<J...>) {
-    ((p[at<I, J>] = select(
-          reset, I == J ? L::load(memory.initial_variance_Nm2[I / 2] + lane) : L(Real(0)),
-          p[at<I, J>])),
+    ((p[at<I, J>] =
+          select(reset, I == J ? L::load(memory.initial_variance_Nm2[I / 2] + lane) : L(Real(0)),
+                 p[at<I, J>])),
      ...);
   }
   /// C P C' < 0 or not finite: rounding has cost P its sign.  The states are kept.
@@ -247,8 +251,9 @@ struct OscillatorGroup {
 /// Adds a flag where the mask says so.  All flags of the filter lie within 23 bits, so that their
 /// sum is exact in float.
 template <class Real>
-STRAINWAVE_INLINE void raise(LaneMask<Real> raised, std::size_t flag, Real (*counts)[block_width<Real>],
-                             std::size_t lane, Lanes<Real>& status) {
+STRAINWAVE_INLINE void raise(LaneMask<Real> raised, std::size_t flag,
+                             Real (*counts)[block_width<Real>], std::size_t lane,
+                             Lanes<Real>& status) {
   using L = Lanes<Real>;
   const L one = select(raised, L(Real(1)), L(Real(0)));
   (L::load(counts[flag] + lane) + one).store(counts[flag] + lane);
@@ -314,9 +319,9 @@ struct OscillatorPlace {
 /// Usual samples from `start` on: every lane learns, and nothing is to be said.  Returns the first
 /// sample that is not so, which has changed nothing.
 template <class Real, std::size_t Orders, bool SecondIsDouble>
-[[gnu::noinline]] inline std::size_t filter_usual(OscillatorLanes<Real, Orders>& memory,
-                                const OscillatorTile<Real>& tile, std::size_t lane,
-                                std::size_t start) {
+STRAINWAVE_KERNEL std::size_t filter_usual(OscillatorLanes<Real, Orders>& memory,
+                                                  const OscillatorTile<Real>& tile,
+                                                  std::size_t lane, std::size_t start) {
   using Group = OscillatorGroup<Real, Orders, SecondIsDouble>;
   using L = Lanes<Real>;
   constexpr auto by_order = std::make_index_sequence<Orders>{};
@@ -366,8 +371,8 @@ template <class Real, std::size_t Orders, bool SecondIsDouble>
     }
     const L ripple_Nm = Group::product(group.c, group.x, Real(0), by_order);
     const L clean_Nm = torque_Nm - ripple_Nm;
-    group.template update<true>(memory, lane, pc, L(Real(1)) / variance_Nm2,
-                                clean_Nm - expected_Nm, L(Real(1)), by_order);
+    group.template update<true>(memory, lane, pc, L(Real(1)) / variance_Nm2, clean_Nm - expected_Nm,
+                                L(Real(1)), by_order);
     group.last_torque_Nm = clean_Nm;
     group.last_speed_rad_s = speed_rad_s;
     group.pending_rad = rotation_rad;
@@ -394,8 +399,9 @@ template <class Real, std::size_t Orders, bool SecondIsDouble>
 
 /// Samples that some lane does not learn from, or about which something is to be said.
 template <class Real, std::size_t Orders, bool SecondIsDouble>
-[[gnu::noinline]] inline void filter_any(OscillatorLanes<Real, Orders>& memory, const OscillatorTile<Real>& tile,
-                       std::size_t lane, std::size_t start, std::size_t end) {
+STRAINWAVE_KERNEL void filter_any(OscillatorLanes<Real, Orders>& memory,
+                                         const OscillatorTile<Real>& tile, std::size_t lane,
+                                         std::size_t start, std::size_t end) {
   using Group = OscillatorGroup<Real, Orders, SecondIsDouble>;
   using L = Lanes<Real>;
   constexpr auto by_order = std::make_index_sequence<Orders>{};
@@ -415,12 +421,13 @@ template <class Real, std::size_t Orders, bool SecondIsDouble>
     const L ripple_Nm = Group::product(now, group.x, Real(0), by_order);
     events.torque_usable = absolute(torque_Nm) <= largest_torque_Nm;
     events.expected_usable = absolute(expected_Nm) <= largest_torque_Nm;
-    events.moving = (absolute(group.pending_rad) >= group.needed_travel_rad) &
-                    (absolute(group.smoothed_speed_rad_s) >=
-                     L::load(memory.minimum_speed_rad_s + lane));
+    events.moving =
+        (absolute(group.pending_rad) >= group.needed_travel_rad) &
+        (absolute(group.smoothed_speed_rad_s) >= L::load(memory.minimum_speed_rad_s + lane));
     const auto used = events.torque_usable & events.expected_usable;
     const auto learned = used & events.moving;
-    group.last_torque_Nm = select(events.torque_usable, torque_Nm - ripple_Nm, group.last_torque_Nm);
+    group.last_torque_Nm =
+        select(events.torque_usable, torque_Nm - ripple_Nm, group.last_torque_Nm);
 
     L pc[Group::states];
     group.project(now, pc, by_state);
@@ -430,17 +437,16 @@ template <class Real, std::size_t Orders, bool SecondIsDouble>
     const L samples = group.samples_without_update + L(Real(1));
     group.keep(updated, pc, by_state);
     group.reset_covariance(memory, lane, events.reset, by_state);
-    group.template update<false>(
-        memory, lane, pc, select(updated, L(Real(1)) / variance_Nm2, L(Real(0))),
-        select(learned, torque_Nm - expected_Nm - ripple_Nm, L(Real(0))),
-        select(updated, samples, L(Real(0))), by_order);
+    group.template update<false>(memory, lane, pc,
+                                 select(updated, L(Real(1)) / variance_Nm2, L(Real(0))),
+                                 select(learned, torque_Nm - expected_Nm - ripple_Nm, L(Real(0))),
+                                 select(updated, samples, L(Real(0))), by_order);
     events.limited = group.beyond_limit(memory, lane, by_order) & updated;
     group.limit_variance(memory, lane, events.limited, by_order);
     group.take_or_wait(memory, lane, learned, used, now, by_state);
 
     const L speed_rad_s = place.speed_rad_s(k);
-    const L turned_rad =
-        absolute(L::load(memory.highest_order + lane) * (speed_rad_s * period_s));
+    const L turned_rad = absolute(L::load(memory.highest_order + lane) * (speed_rad_s * period_s));
     events.speed_usable = turned_rad <= L(static_cast<Real>(largest_rotation_rad));
     events.above_nyquist = events.speed_usable & (turned_rad > L(pi<Real>));
     group.last_speed_rad_s = select(events.speed_usable, speed_rad_s, group.last_speed_rad_s);
@@ -475,4 +481,5 @@ inline void filter_tile(OscillatorLanes<Real, Orders>& memory, const OscillatorT
   }
 }
 
+#undef STRAINWAVE_KERNEL
 #undef STRAINWAVE_INLINE

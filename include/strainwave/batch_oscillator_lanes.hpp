@@ -69,13 +69,11 @@ struct OscillatorTile {
 };
 
 /// Flags that the published filter raises, as counted in OscillatorLanes.
-inline constexpr StatusFlag counted_flags[7] = {StatusFlag::torque_not_finite,
-                                                StatusFlag::rotation_invalid,
-                                                StatusFlag::expected_torque_not_finite,
-                                                StatusFlag::variance_limited,
-                                                StatusFlag::covariance_reset,
-                                                StatusFlag::at_rest,
-                                                StatusFlag::order_above_nyquist};
+inline constexpr StatusFlag counted_flags[7] = {
+    StatusFlag::torque_not_finite,          StatusFlag::rotation_invalid,
+    StatusFlag::expected_torque_not_finite, StatusFlag::variance_limited,
+    StatusFlag::covariance_reset,           StatusFlag::at_rest,
+    StatusFlag::order_above_nyquist};
 
 namespace detail {
 
@@ -138,7 +136,8 @@ inline void put_state(OscillatorLanes<Real, Orders>& lanes, std::size_t lane,
     }
   }
   lanes.pending_rotation_rad[lane] = state.pending_rotation_rad;
-  lanes.needed_travel_rad[lane] = state.rotated_without_update ? Real(0) : config.minimum_travel_rad;
+  lanes.needed_travel_rad[lane] =
+      state.rotated_without_update ? Real(0) : config.minimum_travel_rad;
   lanes.samples_without_update[lane] = static_cast<Real>(state.samples_without_update);
   lanes.last_speed_rad_s[lane] = state.last_speed_rad_s;
   lanes.smoothed_speed_rad_s[lane] = state.smoothed_speed_rad_s;
@@ -162,10 +161,8 @@ inline void take_state(const OscillatorLanes<Real, Orders>& lanes, std::size_t l
     }
   }
   state.pending_rotation_rad = lanes.pending_rotation_rad[lane];
-  state.rotated_without_update =
-      lanes.needed_travel_rad[lane] != config.minimum_travel_rad;
-  state.samples_without_update =
-      static_cast<std::uint32_t>(lanes.samples_without_update[lane]);
+  state.rotated_without_update = lanes.needed_travel_rad[lane] != config.minimum_travel_rad;
+  state.samples_without_update = static_cast<std::uint32_t>(lanes.samples_without_update[lane]);
   state.last_speed_rad_s = lanes.last_speed_rad_s[lane];
   state.smoothed_speed_rad_s = lanes.smoothed_speed_rad_s[lane];
   state.last_torque_Nm = lanes.last_torque_Nm[lane];

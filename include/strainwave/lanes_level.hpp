@@ -5,7 +5,8 @@
 /// Included by lanes.hpp within the namespace of each level.
 // No guard and no includes: see lanes_each_level.hpp.
 
-#define STRAINWAVE_INLINE [[gnu::always_inline]] inline
+// Without the sanitizers: they would take minutes to compile, for what only computes.
+#define STRAINWAVE_INLINE [[gnu::always_inline, gnu::no_sanitize("undefined")]] inline
 
 template <class Real>
 struct LaneVectors {
@@ -69,7 +70,7 @@ struct Lanes {
   Vector v;
 
   Lanes() = default;
-  STRAINWAVE_INLINE Lanes(Vector vector) : v(vector) {}    // NOLINT(google-explicit-constructor)
+  STRAINWAVE_INLINE Lanes(Vector vector) : v(vector) {}  // NOLINT(google-explicit-constructor)
   STRAINWAVE_INLINE Lanes(Real value) : v(value - Vector{}) {}  // NOLINT(google-explicit-*)
 
   STRAINWAVE_INLINE static Lanes load(const Real* from) {
