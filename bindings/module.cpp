@@ -15,6 +15,7 @@ NB_MODULE(_core, m) {
   bind_gauge_monitor(m);
   bind_calibration(m);
   bind_oscillator_filter(m);
+  bind_batch(m);
   bind_ripple_config(m);
   bind_ripple_filter(m);
   bind_ripple_smoother(m);

@@ -17,6 +17,10 @@
 
 namespace strainwave {
 
+/// How much more than the ripple a single state may differ at a boundary.  A state that is hardly
+/// seen may be some way off: what matters of it is in the ripple.
+inline constexpr double state_tolerance_ratio = 100.0;
+
 struct LongOptions {
   BatchOptions batch = {};
   bool in_sequence = false;  ///< exactly as step() does it, sample after sample
@@ -26,9 +30,7 @@ struct LongOptions {
   /// Difference of the predicted ripple at a boundary beyond which the chunk after it is filtered
   /// again in sequence.
   double tolerance_Nm = 1e-4;
-  /// Likewise of any single state.  A state that is hardly seen may differ more: what matters of it
-  /// is in the ripple.
-  double state_tolerance_Nm = 1e-2;
+  double state_tolerance_Nm = state_tolerance_ratio * 1e-4;  ///< likewise of any single state
 };
 
 /// What process_long() did, and how far from a filter in sequence it came out.
