@@ -88,15 +88,17 @@ class Batch {
                                      {.level = level, .thread_count = threads});
   }
 
-  [[nodiscard]] LongReport process_one(
-      const Vector<Real>& torque_Nm, const Vector<Real>& speed_rad_s,
-      const std::optional<Vector<Real>>& expected_Nm,
-      const std::optional<Writable<Real>>& clean_Nm, const std::optional<Writable<Real>>& ripple_Nm,
-      const std::optional<Writable<std::uint32_t>>& status, const LongOptions& options) {
+  [[nodiscard]] LongReport process_one(const Vector<Real>& torque_Nm,
+                                       const Vector<Real>& speed_rad_s,
+                                       const std::optional<Vector<Real>>& expected_Nm,
+                                       const std::optional<Writable<Real>>& clean_Nm,
+                                       const std::optional<Writable<Real>>& ripple_Nm,
+                                       const std::optional<Writable<std::uint32_t>>& status,
+                                       const LongOptions& options) {
     require_available(options.batch.level);
-    const std::vector<Channel> channels = to_channels(
-        {torque_Nm}, {speed_rad_s}, to_rows(expected_Nm), to_rows(clean_Nm), to_rows(ripple_Nm),
-        to_rows(status));
+    const std::vector<Channel> channels =
+        to_channels({torque_Nm}, {speed_rad_s}, to_rows(expected_Nm), to_rows(clean_Nm),
+                    to_rows(ripple_Nm), to_rows(status));
     const nb::gil_scoped_release release;
     const auto held = calls_.hold();
     return process_long(configs_[0], states_[0], channels[0], options);
@@ -135,8 +137,7 @@ class Batch {
     if (status) {
       require_same_length("status", status->size(), "configs", channels.size());
       for (std::size_t i = 0; i < channels.size(); ++i) {
-        require_same_length("status", (*status)[i].shape(0), "torque_Nm",
-                            channels[i].sample_count);
+        require_same_length("status", (*status)[i].shape(0), "torque_Nm", channels[i].sample_count);
         channels[i].status = (*status)[i].data();
       }
     }

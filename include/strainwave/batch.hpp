@@ -23,7 +23,7 @@
 namespace strainwave {
 
 struct BatchOptions {
-  VectorLevel level = best_vector_level();  ///< must be available, see is_available()
+  VectorLevel level = best_vector_level();  ///< one by one where it is not available
   std::size_t thread_count = 1;
 };
 
@@ -75,23 +75,14 @@ void process_batch(std::span<const OscillatorFilterConfig<Real, MaxOrders>> conf
   const std::vector<std::size_t> order = detail::sorted_channels(configs, channels);
   const std::vector<std::size_t> starts = detail::block_starts(configs, order);
   detail::for_each_part(starts.size() - 1, options.thread_count, [&](std::size_t part) {
-    const detail::OscillatorKind kind = detail::kind_of(configs[order[starts[part]]]);
-    const bool on_lanes = kind.orders != 0 && options.level != VectorLevel::one_by_one;
     detail::OscillatorBlock<Real, MaxOrders> block;
     for (std::size_t i = starts[part]; i < starts[part + 1]; ++i) {
-      const std::size_t channel = order[i];
-      if (on_lanes) {
-        const std::size_t lane = i - starts[part];
-        block.configs[lane] = &configs[channel];
-        block.states[lane] = &states[channel];
-        block.channels[lane] = channels[channel];
-      } else {
-        detail::filter_one(configs[channel], states[channel], channels[channel]);
-      }
+      const std::size_t lane = i - starts[part];
+      block.configs[lane] = &configs[order[i]];
+      block.states[lane] = &states[order[i]];
+      block.channels[lane] = channels[order[i]];
     }
-    if (on_lanes) {
-      detail::filter_block(kind, options.level, block);
-    }
+    detail::filter_block(detail::kind_of(*block.configs[0]), options.level, block);
   });
 }
 

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <utility>
 
 #include "strainwave/batch_layout.hpp"
@@ -48,9 +49,6 @@ using TileKernel = void (*)(OscillatorLanes<Real, Orders>&, const OscillatorTile
 template <class Real, std::size_t Orders, bool SecondIsDouble>
 [[nodiscard]] inline TileKernel<Real, Orders> tile_kernel(VectorLevel level) {
   switch (level) {
-#if STRAINWAVE_HAS_LANES
-    case VectorLevel::portable:
-      return level_portable::filter_tile<Real, Orders, SecondIsDouble>;
 #if STRAINWAVE_HAS_X86_LEVELS
     case VectorLevel::x86_64_v2:
       return level_v2::filter_tile<Real, Orders, SecondIsDouble>;
@@ -58,7 +56,9 @@ template <class Real, std::size_t Orders, bool SecondIsDouble>
       return level_v3::filter_tile<Real, Orders, SecondIsDouble>;
     case VectorLevel::x86_64_v4:
       return level_v4::filter_tile<Real, Orders, SecondIsDouble>;
-#endif
+#elif STRAINWAVE_HAS_LANES
+    case VectorLevel::portable:
+      return level_portable::filter_tile<Real, Orders, SecondIsDouble>;
 #endif
     default:
       return nullptr;
@@ -83,19 +83,19 @@ template <class Real, std::size_t MaxOrders>
   if (config.rotation_source != RotationSource::speed || orders > most_lane_orders) {
     return {};
   }
-  const bool second_is_double = orders > 1 && half_of(config, 1) == 0;
   if (orders > 3) {
     return {most_lane_orders, false};
   }
-  return {orders > 2 ? std::size_t{3} : std::size_t{2}, second_is_double};
+  // What the kernel makes of an order that a lane does not have is not used.
+  const bool second_is_double = orders < 2 || half_of(config, 1) == 0;
+  return {orders > 2 || !second_is_double ? std::size_t{3} : std::size_t{2}, second_is_double};
 }
 
 /// Calls with the kernel of a kind and level.
 template <class Real, class Call>
 inline void with_kernel(OscillatorKind kind, VectorLevel level, const Call& call) {
   if (kind.orders == 2) {
-    call(kind.second_is_double ? tile_kernel<Real, 2, true>(level)
-                               : tile_kernel<Real, 2, false>(level));
+    call(tile_kernel<Real, 2, true>(level));
   } else if (kind.orders == 3) {
     call(kind.second_is_double ? tile_kernel<Real, 3, true>(level)
                                : tile_kernel<Real, 3, false>(level));
@@ -310,13 +310,26 @@ class OscillatorBlockRun {
   Tile<Real> status_;
 };
 
-/// A block through its channels' recordings, at a vector level.
+/// A block through its channels' recordings, at a vector level; one by one where there is no
+/// kernel.
 template <class Real, std::size_t MaxOrders>
 inline void filter_block(OscillatorKind kind, VectorLevel level,
                          const OscillatorBlock<Real, MaxOrders>& block) {
-  with_kernel<Real>(kind, level, [&]<std::size_t Orders>(TileKernel<Real, Orders> kernel) {
-    OscillatorBlockRun<Real, Orders, MaxOrders>(block, kernel).run();
-  });
+  bool is_done = false;
+  if (kind.orders != 0 && is_available(level)) {
+    with_kernel<Real>(kind, level, [&]<std::size_t Orders>(TileKernel<Real, Orders> kernel) {
+      if (kernel != nullptr) {
+        // 30 KB: not every thread's stack has room for it.
+        std::make_unique<OscillatorBlockRun<Real, Orders, MaxOrders>>(block, kernel)->run();
+        is_done = true;
+      }
+    });
+  }
+  for (std::size_t lane = 0; lane < block_width<Real> && !is_done; ++lane) {
+    if (block.configs[lane] != nullptr) {
+      filter_one(*block.configs[lane], *block.states[lane], block.channels[lane]);
+    }
+  }
 }
 
 }  // namespace detail

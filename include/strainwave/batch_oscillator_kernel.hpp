@@ -7,8 +7,8 @@
 /// others are told apart by masks.
 // No guard and no includes: see lanes_each_level.hpp.
 
-// Without the sanitizers: they would take minutes to compile.  What a kernel reads and writes is the
-// tile and the block, and nothing in it depends on values.
+// Without the sanitizers: they would take minutes to compile.  What a kernel reads and writes is
+// the tile and the block, and nothing in it depends on values.
 #define STRAINWAVE_INLINE [[gnu::always_inline, gnu::no_sanitize("undefined")]] inline
 #define STRAINWAVE_KERNEL \
   [[gnu::noinline, gnu::no_sanitize("address"), gnu::no_sanitize("undefined")]] inline
@@ -320,8 +320,8 @@ struct OscillatorPlace {
 /// sample that is not so, which has changed nothing.
 template <class Real, std::size_t Orders, bool SecondIsDouble>
 STRAINWAVE_KERNEL std::size_t filter_usual(OscillatorLanes<Real, Orders>& memory,
-                                                  const OscillatorTile<Real>& tile,
-                                                  std::size_t lane, std::size_t start) {
+                                           const OscillatorTile<Real>& tile, std::size_t lane,
+                                           std::size_t start) {
   using Group = OscillatorGroup<Real, Orders, SecondIsDouble>;
   using L = Lanes<Real>;
   constexpr auto by_order = std::make_index_sequence<Orders>{};
@@ -400,8 +400,8 @@ STRAINWAVE_KERNEL std::size_t filter_usual(OscillatorLanes<Real, Orders>& memory
 /// Samples that some lane does not learn from, or about which something is to be said.
 template <class Real, std::size_t Orders, bool SecondIsDouble>
 STRAINWAVE_KERNEL void filter_any(OscillatorLanes<Real, Orders>& memory,
-                                         const OscillatorTile<Real>& tile, std::size_t lane,
-                                         std::size_t start, std::size_t end) {
+                                  const OscillatorTile<Real>& tile, std::size_t lane,
+                                  std::size_t start, std::size_t end) {
   using Group = OscillatorGroup<Real, Orders, SecondIsDouble>;
   using L = Lanes<Real>;
   constexpr auto by_order = std::make_index_sequence<Orders>{};

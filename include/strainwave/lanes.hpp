@@ -36,7 +36,7 @@ namespace strainwave {
 /// What the processor can do with vectors.
 enum class VectorLevel : std::uint8_t {
   one_by_one,  ///< no vectors: channel after channel through step()
-  portable,    ///< 16 bytes with whatever the program is compiled for; NEON on aarch64
+  portable,    ///< 16 bytes, for other processors than x86-64; NEON on aarch64
   x86_64_v2,   ///< 16 bytes, SSE 4.2
   x86_64_v3,   ///< 32 bytes, AVX2 and fused products
   x86_64_v4,   ///< 64 bytes, AVX-512 with masks
@@ -48,7 +48,7 @@ enum class VectorLevel : std::uint8_t {
     case VectorLevel::one_by_one:
       return true;
     case VectorLevel::portable:
-      return STRAINWAVE_HAS_LANES != 0;
+      return STRAINWAVE_HAS_LANES != 0 && STRAINWAVE_HAS_X86_LEVELS == 0;
 #if STRAINWAVE_HAS_X86_LEVELS
     case VectorLevel::x86_64_v2:
       return __builtin_cpu_supports("sse4.2") != 0 && __builtin_cpu_supports("ssse3") != 0;

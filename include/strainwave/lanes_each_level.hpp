@@ -13,14 +13,6 @@
 #error "strainwave: STRAINWAVE_LEVEL_FILE must name the file to be compiled for each level"
 #endif
 
-#define STRAINWAVE_LANE_BYTES 16
-#define STRAINWAVE_LANE_LEVEL 0
-namespace strainwave::level_portable {
-#include STRAINWAVE_LEVEL_FILE
-}  // namespace strainwave::level_portable
-#undef STRAINWAVE_LANE_LEVEL
-#undef STRAINWAVE_LANE_BYTES
-
 #if STRAINWAVE_HAS_X86_LEVELS
 
 #define STRAINWAVE_LANE_BYTES 16
@@ -77,6 +69,16 @@ namespace strainwave::level_v4 {
 #else
 #pragma GCC pop_options
 #endif
+#undef STRAINWAVE_LANE_LEVEL
+#undef STRAINWAVE_LANE_BYTES
+
+#else
+
+#define STRAINWAVE_LANE_BYTES 16
+#define STRAINWAVE_LANE_LEVEL 0
+namespace strainwave::level_portable {
+#include STRAINWAVE_LEVEL_FILE
+}  // namespace strainwave::level_portable
 #undef STRAINWAVE_LANE_LEVEL
 #undef STRAINWAVE_LANE_BYTES
 

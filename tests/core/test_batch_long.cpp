@@ -61,12 +61,12 @@ TEST(BatchLong, AWrongStartIsForgottenByAFactorOfEAMemory) {
   strainwave::detail::filter_one(config, right, strainwave::detail::part_of(channel, 0, 10'000));
   auto wrong = right;
   wrong.states_Nm[0] += 1.0;
-  const auto part = strainwave::detail::part_of(channel, 10'000,
-                                                static_cast<std::size_t>(8.0 * memory.samples));
+  const auto part =
+      strainwave::detail::part_of(channel, 10'000, static_cast<std::size_t>(8.0 * memory.samples));
   strainwave::detail::filter_one(config, right, part);
   strainwave::detail::filter_one(config, wrong, part);
-  const double left = std::hypot(right.states_Nm[0] - wrong.states_Nm[0],
-                                 right.states_Nm[1] - wrong.states_Nm[1]);
+  const double left =
+      std::hypot(right.states_Nm[0] - wrong.states_Nm[0], right.states_Nm[1] - wrong.states_Nm[1]);
   EXPECT_NEAR(std::log(left), -8.0, 0.5);
 }
 
@@ -137,8 +137,7 @@ TEST(BatchLong, TooShortAWarmUpIsFoundAndRepeated) {
   EXPECT_EQ(repeated.state.counters.samples, log_samples);
   // Told to believe them, it reports by how much they differ.
   const Run believed = filtered(
-      config, log,
-      {.warm_up_memories = 0.5, .tolerance_Nm = 1e3, .state_tolerance_Nm = 1e3});
+      config, log, {.warm_up_memories = 0.5, .tolerance_Nm = 1e3, .state_tolerance_Nm = 1e3});
   EXPECT_EQ(believed.report.repeated_chunks, 0U);
   EXPECT_GT(believed.report.largest_ripple_difference_Nm, 1e-2);
   EXPECT_GT(rms_difference_Nm(believed.log, sequence.log), 1e-3);
