@@ -244,7 +244,21 @@ inline LongReport join_chunks(const OscillatorFilterConfig<Real, MaxOrders>& con
 /// Blocks for each thread: threads that were held up leave work to the others.
 inline constexpr std::size_t blocks_per_thread = 2;
 
-/// How many chunks a log is cut into; 1 where it is filtered in sequence.
+/// The shortest of the warm-ups in a log's quarters: a long one is a standstill's.
+template <class Real, std::size_t MaxOrders>
+[[nodiscard]] inline std::size_t typical_warm_up(
+    const OscillatorFilterConfig<Real, MaxOrders>& config, const OscillatorChannel<Real>& channel,
+    double memories) {
+  std::size_t typical = channel.sample_count;
+  for (std::size_t quarter = 1; quarter < 4; ++quarter) {
+    const std::size_t start = channel.sample_count / 4 * quarter;
+    typical = std::min(typical, warm_up_before(config, channel, start, memories));
+  }
+  return std::max<std::size_t>(typical, 1);
+}
+
+/// How many chunks a log is cut into, each of four warm-ups at least; 1 where it is filtered in
+/// sequence.
 template <class Real, std::size_t MaxOrders>
 [[nodiscard]] inline std::size_t chunk_count_for(
     const OscillatorFilterConfig<Real, MaxOrders>& config, const OscillatorChannel<Real>& channel,
@@ -254,7 +268,8 @@ template <class Real, std::size_t MaxOrders>
     return 1;
   }
   const std::size_t threads = std::max<std::size_t>(options.batch.thread_count, 1);
-  const std::size_t most = channel.sample_count / (2 * tile_samples);
+  const std::size_t warm_up = typical_warm_up(config, channel, options.warm_up_memories);
+  const std::size_t most = channel.sample_count / std::max(4 * warm_up, 2 * tile_samples);
   return std::min(block_width<Real> * blocks_per_thread * threads, most);
 }
 

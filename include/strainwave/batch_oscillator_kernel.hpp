@@ -9,7 +9,8 @@
 
 // Without the sanitizers: they would take minutes to compile.  What a kernel reads and writes is
 // the tile and the block, and nothing in it depends on values.
-#define STRAINWAVE_INLINE [[gnu::always_inline, gnu::no_sanitize("undefined")]] inline
+#define STRAINWAVE_INLINE \
+  [[gnu::always_inline, gnu::no_sanitize("address"), gnu::no_sanitize("undefined")]] inline
 #define STRAINWAVE_KERNEL \
   [[gnu::noinline, gnu::no_sanitize("address"), gnu::no_sanitize("undefined")]] inline
 

@@ -6,7 +6,8 @@
 // No guard and no includes: see lanes_each_level.hpp.
 
 // Without the sanitizers: they would take minutes to compile, for what only computes.
-#define STRAINWAVE_INLINE [[gnu::always_inline, gnu::no_sanitize("undefined")]] inline
+#define STRAINWAVE_INLINE \
+  [[gnu::always_inline, gnu::no_sanitize("address"), gnu::no_sanitize("undefined")]] inline
 
 template <class Real>
 struct LaneVectors {

@@ -97,7 +97,7 @@ def test_expected_torque_is_taken_off():
 @pytest.mark.parametrize("dtype", [np.float64, np.float32])
 def test_long_log_is_the_sequence_within_a_tenth_of_a_millinewtonmetre(dtype):
     config = OscillatorFilterConfig(orders=[2, 4, Fraction(1, 20)], process_noise_variance_Nm2=1e-4)
-    torque, speed = recording(2, 120_000, dtype)
+    torque, speed = recording(2, 400_000, dtype)
     sequence, counters = alone(config, torque, speed, dtype)
     exact = filter_long(config, torque, motor_speed_rad_s=speed, dtype=dtype, in_sequence=True)
     np.testing.assert_array_equal(exact.torque_Nm, sequence.torque_Nm)

@@ -15,6 +15,7 @@ ALLOWED_HOSTED = ALLOWED | {
     "arm_neon.h",
     "atomic",
     "immintrin.h",
+    "initializer_list",
     "memory",
     "span",
     "thread",
