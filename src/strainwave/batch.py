@@ -264,10 +264,8 @@ def _batch_type(
     return _core.OscillatorBatchFloat32 if dtype is np.float32 else _core.OscillatorBatchFloat64
 
 
-def _configs(
-    configs: Sequence[_core.OscillatorFilterConfig],
-) -> list[_core.OscillatorFilterConfig]:
-    listed = list(configs) if isinstance(configs, list | tuple) else [configs]
+def _configs(configs: object) -> list[_core.OscillatorFilterConfig]:
+    listed: list[Any] = list(configs) if isinstance(configs, list | tuple) else [configs]
     for index, config in enumerate(listed):
         if not isinstance(config, _core.OscillatorFilterConfig):
             raise InputError(
@@ -311,7 +309,7 @@ def _new_rows(lengths: list[int], dtype: type[Any], as_array: bool) -> Rows:
     return [np.empty(length, dtype=dtype) for length in lengths]
 
 
-def _level(level: _core.VectorLevel | None) -> _core.VectorLevel:
+def _level(level: object) -> _core.VectorLevel:
     if level is None:
         return _core.best_vector_level()
     if not isinstance(level, _core.VectorLevel) or not _core.is_available(level):
@@ -322,7 +320,7 @@ def _level(level: _core.VectorLevel | None) -> _core.VectorLevel:
     return level
 
 
-def _threads(threads: int) -> int:
+def _threads(threads: object) -> int:
     if isinstance(threads, bool) or not isinstance(threads, int) or not 1 <= threads <= 1024:
         raise InputError(
             f"threads = {threads!r}: expected a whole number from 1 to 1024; correct this value"
@@ -330,7 +328,7 @@ def _threads(threads: int) -> int:
     return threads
 
 
-def _positive(name: str, value: float) -> float:
+def _positive(name: str, value: object) -> float:
     if isinstance(value, bool) or not isinstance(value, int | float) or not 0 < value < np.inf:
         raise InputError(
             f"{name} = {value!r}: expected a finite number above 0; correct this value"

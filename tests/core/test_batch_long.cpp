@@ -26,14 +26,15 @@ BatchConfig<float> joint_of_log() {
 }
 
 /// A filter's results over a log, and what was reported.
-struct Run {
+struct Filtered {
   Log<float> log;
   BatchState<float> state;
   LongReport report;
 };
 
-Run filtered(const BatchConfig<float>& config, const Log<float>& log, const LongOptions& options) {
-  Run run{log, strainwave::initial_state(config), {}};
+Filtered filtered(const BatchConfig<float>& config, const Log<float>& log,
+                  const LongOptions& options) {
+  Filtered run{log, strainwave::initial_state(config), {}};
   run.report = process_long(config, run.state, run.log.channel(), options);
   return run;
 }
@@ -91,10 +92,10 @@ TEST(BatchLong, WarmUpPassesOverStandstillAndUnusableSamples) {
 TEST(BatchLong, ChunksAreTheSequenceWithinTheReportedDifference) {
   const BatchConfig<float> config = joint_of_log();
   const Log<float> log = wild_log<float>(1, log_samples);
-  const Run sequence = filtered(config, log, {.in_sequence = true});
+  const Filtered sequence = filtered(config, log, {.in_sequence = true});
   EXPECT_EQ(sequence.report.chunk_count, 1U);
   for (const strainwave::VectorLevel level : vector_levels()) {
-    const Run chunks =
+    const Filtered chunks =
         filtered(config, log, {.batch = {.level = level, .thread_count = 2}, .tolerance_Nm = 1e-3});
     EXPECT_GT(chunks.report.chunk_count, 8U);
     EXPECT_EQ(chunks.report.repeated_chunks, 0U);
@@ -114,8 +115,8 @@ TEST(BatchLong, ChunksAreTheSequenceWithinTheReportedDifference) {
 TEST(BatchLong, TheEndGoesOnLikeTheSequence) {
   const BatchConfig<float> config = joint_of_log();
   const Log<float> log = quiet_log<float>(1, log_samples);
-  Run chunks = filtered(config, log, {});
-  Run sequence = filtered(config, log, {.in_sequence = true});
+  Filtered chunks = filtered(config, log, {});
+  Filtered sequence = filtered(config, log, {.in_sequence = true});
   ASSERT_GT(chunks.report.chunk_count, 1U);
   Log<float> rest = quiet_log<float>(6, 3000);
   Log<float> other_rest = rest;
@@ -128,15 +129,15 @@ TEST(BatchLong, TheEndGoesOnLikeTheSequence) {
 TEST(BatchLong, TooShortAWarmUpIsFoundAndRepeated) {
   const BatchConfig<float> config = joint_of_log();
   const Log<float> log = quiet_log<float>(0, log_samples);
-  const Run sequence = filtered(config, log, {.in_sequence = true});
+  const Filtered sequence = filtered(config, log, {.in_sequence = true});
   // Half a memory leaves most of a wrong start: every chunk differs, and none is believed.
-  const Run repeated = filtered(config, log, {.warm_up_memories = 0.5});
+  const Filtered repeated = filtered(config, log, {.warm_up_memories = 0.5});
   EXPECT_GT(repeated.report.chunk_count, 8U);
   EXPECT_EQ(repeated.report.repeated_chunks, repeated.report.chunk_count - 1);
   EXPECT_LT(rms_difference_Nm(repeated.log, sequence.log), 1e-4);
   EXPECT_EQ(repeated.state.counters.samples, log_samples);
   // Told to believe them, it reports by how much they differ.
-  const Run believed = filtered(
+  const Filtered believed = filtered(
       config, log, {.warm_up_memories = 0.5, .tolerance_Nm = 1e3, .state_tolerance_Nm = 1e3});
   EXPECT_EQ(believed.report.repeated_chunks, 0U);
   EXPECT_GT(believed.report.largest_ripple_difference_Nm, 1e-2);
@@ -147,9 +148,9 @@ TEST(BatchLong, WhereNothingIsForgottenTheLogIsFilteredInSequence) {
   BatchConfig<float> config = joint_of_log();
   const Log<float> log = quiet_log<float>(0, 8000);
   config.process_noise_variance_Nm2[1] = 0.0F;
-  const Run never = filtered(config, log, {});
+  const Filtered never = filtered(config, log, {});
   EXPECT_EQ(never.report.chunk_count, 1U);
-  const Run sequence = filtered(config, log, {.in_sequence = true});
+  const Filtered sequence = filtered(config, log, {.in_sequence = true});
   EXPECT_EQ(never.log.clean_Nm, sequence.log.clean_Nm);
 }
 
