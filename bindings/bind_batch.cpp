@@ -107,6 +107,7 @@ class Batch {
   [[nodiscard]] std::vector<CountsByName> counters() const {
     const auto held = calls_.hold();
     std::vector<CountsByName> counts;
+    counts.reserve(states_.size());
     for (const State& state : states_) {
       counts.push_back(counts_by_name(state.counters));
     }

@@ -78,7 +78,7 @@ inline std::size_t gather_squares(const Real* const* rows, std::size_t at, std::
                                   Real* tile) {
   constexpr std::size_t width = block_width<Real>;
   constexpr std::size_t side = Square<Real>::side;
-  Square<Real> square;
+  Square<Real> square = {};
   for (std::size_t lane = 0; lane < width; lane += side) {
     for (std::size_t k = 0; k + side <= count; k += side) {
       for (std::size_t i = 0; i < side; ++i) {
@@ -104,7 +104,7 @@ inline std::size_t scatter_squares(const Real* tile, std::size_t count, Real* co
       return 0;
     }
   }
-  Square<Real> square;
+  Square<Real> square = {};
   for (std::size_t k = 0; k + side <= count; k += side) {
     for (std::size_t i = 0; i < side; ++i) {
       square.load_row(i, tile + (k + i) * block_width<Real> + lane);

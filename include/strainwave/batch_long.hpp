@@ -220,8 +220,9 @@ inline LongReport join_chunks(const OscillatorFilterConfig<Real, MaxOrders>& con
     Chunk<Real, MaxOrders>& chunk = chunks[i];
     report.warm_up_samples += chunk.warm_up;
     const StateDifference apart = difference_of(config, chunk.began, chunks[i - 1].ended);
-    if (!(apart.ripple_Nm <= options.tolerance_Nm &&
-          apart.state_Nm <= options.state_tolerance_Nm)) {
+    const bool is_close = apart.ripple_Nm <= options.tolerance_Nm &&
+                          apart.state_Nm <= options.state_tolerance_Nm;  // and not NaN
+    if (!is_close) {
       ++report.repeated_chunks;
       chunk.ended = chunks[i - 1].ended;
       chunk.ended.counters = {};

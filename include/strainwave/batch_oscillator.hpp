@@ -151,7 +151,7 @@ class OscillatorBlockRun {
   static constexpr std::size_t width = block_width<Real>;
 
   OscillatorBlockRun(const OscillatorBlock<Real, MaxOrders>& block, TileKernel<Real, Orders> kernel)
-      : block_(block), kernel_(kernel) {
+      : block_(&block), kernel_(kernel) {
     std::size_t known = 0;
     while (block.configs[known] == nullptr) {
       ++known;
@@ -173,19 +173,22 @@ class OscillatorBlockRun {
 
   /// From the first sample to the last one of the longest channel.
   void run() {
-    for (std::size_t at = 0; const std::size_t count = next_count(at);) {
+    std::size_t at = 0;
+    std::size_t count = next_count(at);
+    while (count > 0) {
       gather_tile(at, count);
       ask_ahead(at + count);
       kernel_(lanes_, tile_);
       scatter_tile(at, count);
       at += count;
       take_ended(at, count);
+      count = next_count(at);
     }
   }
 
  private:
   [[nodiscard]] bool is_live(std::size_t lane, std::size_t at) const {
-    return block_.configs[lane] != nullptr && block_.channels[lane].sample_count > at;
+    return block_->configs[lane] != nullptr && block_->channels[lane].sample_count > at;
   }
 
   /// Samples up to where the next channel ends, a tile at most; 0 where all have ended.  Channels
@@ -195,14 +198,14 @@ class OscillatorBlockRun {
     left_ = 0;
     for (std::size_t lane = 0; lane < width; ++lane) {
       if (is_live(lane, at)) {
-        const std::size_t left = block_.channels[lane].sample_count - at;
+        const std::size_t left = block_->channels[lane].sample_count - at;
         left_ = live == width || left < left_ ? left : left_;
         live = lane;
       }
     }
     for (std::size_t lane = 0; lane < width && live < width; ++lane) {
       const bool own = is_live(lane, at);
-      const OscillatorChannel<Real>& from = block_.channels[own ? lane : live];
+      const OscillatorChannel<Real>& from = block_->channels[own ? lane : live];
       rows_.measured[lane] = from.measured_torque_Nm;
       rows_.speed[lane] = from.motor_speed_rad_s;
       rows_.expected[lane] = from.expected_torque_Nm;
@@ -259,9 +262,9 @@ class OscillatorBlockRun {
       scatter(ripple_.values, count, rows_.ripple, at);
     }
     for (std::size_t lane = 0; lane < width && has_status_; ++lane) {
-      if (is_live(lane, at) && block_.channels[lane].status != nullptr) {
+      if (is_live(lane, at) && block_->channels[lane].status != nullptr) {
         for (std::size_t k = 0; k < count; ++k) {
-          block_.channels[lane].status[at + k] =
+          block_->channels[lane].status[at + k] =
               static_cast<Status>(status_.values[k * width + lane]);
         }
       }
@@ -275,9 +278,9 @@ class OscillatorBlockRun {
       if (!is_live(lane, at - count)) {
         continue;
       }
-      take_counts(lanes_, lane, count, block_.states[lane]->counters);
+      take_counts(lanes_, lane, count, block_->states[lane]->counters);
       if (!is_live(lane, at)) {
-        take_state(lanes_, lane, *block_.configs[lane], *block_.states[lane]);
+        take_state(lanes_, lane, *block_->configs[lane], *block_->states[lane]);
       }
     }
     clear_counts(lanes_);
@@ -291,7 +294,7 @@ class OscillatorBlockRun {
     Real* ripple[width];
   };
 
-  const OscillatorBlock<Real, MaxOrders>& block_;
+  const OscillatorBlock<Real, MaxOrders>* block_;
   TileKernel<Real, Orders> kernel_;
   OscillatorLanes<Real, Orders> lanes_ = {};
   OscillatorTile<Real> tile_ = {};

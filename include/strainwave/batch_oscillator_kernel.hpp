@@ -219,12 +219,12 @@ struct OscillatorGroup {
   }
 
   template <std::size_t A>
-  STRAINWAVE_INLINE L larger_variance() const {
+  [[nodiscard]] STRAINWAVE_INLINE L larger_variance() const {
     return larger(p[at<2 * A, 2 * A>], p[at<2 * A + 1, 2 * A + 1>]);
   }
   template <std::size_t... A>
-  STRAINWAVE_INLINE Mask beyond_limit(const Memory& memory, std::size_t lane,
-                                      std::index_sequence<A...>) const {
+  [[nodiscard]] STRAINWAVE_INLINE Mask beyond_limit(const Memory& memory, std::size_t lane,
+                                                    std::index_sequence<A...>) const {
     return ((larger_variance<A>() > L::load(memory.variance_limit_Nm2[A] + lane)) | ...);
   }
   template <std::size_t I, std::size_t... J>
@@ -299,13 +299,13 @@ struct OscillatorPlace {
   OscillatorTile<Real> tile;
   std::size_t lane;
 
-  STRAINWAVE_INLINE L torque_Nm(std::size_t k) const {
+  [[nodiscard]] STRAINWAVE_INLINE L torque_Nm(std::size_t k) const {
     return L::load(tile.measured_torque_Nm + k * block_width<Real> + lane);
   }
-  STRAINWAVE_INLINE L speed_rad_s(std::size_t k) const {
+  [[nodiscard]] STRAINWAVE_INLINE L speed_rad_s(std::size_t k) const {
     return L::load(tile.motor_speed_rad_s + k * block_width<Real> + lane);
   }
-  STRAINWAVE_INLINE L expected_Nm(std::size_t k) const {
+  [[nodiscard]] STRAINWAVE_INLINE L expected_Nm(std::size_t k) const {
     return L::load(tile.expected_torque_Nm + k * tile.expected_stride + lane);
   }
   STRAINWAVE_INLINE void put(std::size_t k, L clean_Nm, L ripple_Nm, L status) const {
@@ -414,7 +414,7 @@ STRAINWAVE_KERNEL void filter_any(OscillatorLanes<Real, Orders>& memory,
   Group group;
   group.load(memory, lane);
   for (std::size_t k = start; k < end; ++k) {
-    OscillatorEvents<Real> events;
+    OscillatorEvents<Real> events = {};
     const L torque_Nm = place.torque_Nm(k);
     const L expected_Nm = place.expected_Nm(k);
     L now[Group::states];

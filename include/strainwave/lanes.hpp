@@ -53,14 +53,14 @@ enum class VectorLevel : std::uint8_t {
       return STRAINWAVE_HAS_LANES != 0 && STRAINWAVE_HAS_X86_LEVELS == 0;
 #if STRAINWAVE_HAS_X86_LEVELS
     case VectorLevel::x86_64_v2:
-      return __builtin_cpu_supports("sse4.2") != 0 && __builtin_cpu_supports("ssse3") != 0;
+      return __builtin_cpu_supports("sse4.2") && __builtin_cpu_supports("ssse3");
     case VectorLevel::x86_64_v3:
-      return __builtin_cpu_supports("avx2") != 0 && __builtin_cpu_supports("fma") != 0 &&
-             __builtin_cpu_supports("bmi2") != 0;
+      return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") &&
+             __builtin_cpu_supports("bmi2");
     case VectorLevel::x86_64_v4:
-      return is_available(VectorLevel::x86_64_v3) && __builtin_cpu_supports("avx512f") != 0 &&
-             __builtin_cpu_supports("avx512bw") != 0 && __builtin_cpu_supports("avx512cd") != 0 &&
-             __builtin_cpu_supports("avx512dq") != 0 && __builtin_cpu_supports("avx512vl") != 0;
+      return is_available(VectorLevel::x86_64_v3) && __builtin_cpu_supports("avx512f") &&
+             __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512cd") &&
+             __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl");
 #endif
     default:
       return false;

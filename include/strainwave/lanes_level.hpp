@@ -32,22 +32,22 @@ struct LaneMask {
     return {static_cast<Bits>(bits | other.bits)};
   }
   STRAINWAVE_INLINE LaneMask operator!() const { return {static_cast<Bits>(~bits)}; }
-  STRAINWAVE_INLINE bool any() const { return bits != 0; }
-  STRAINWAVE_INLINE bool all() const { return bits == every; }
+  [[nodiscard]] STRAINWAVE_INLINE bool any() const { return bits != 0; }
+  [[nodiscard]] STRAINWAVE_INLINE bool all() const { return bits == every; }
 #else
-  using Bits = typename LaneVectors<Real>::Wholes;
+  using Bits = LaneVectors<Real>::Wholes;
   Bits bits;
 
   STRAINWAVE_INLINE LaneMask operator&(LaneMask other) const { return {bits & other.bits}; }
   STRAINWAVE_INLINE LaneMask operator|(LaneMask other) const { return {bits | other.bits}; }
   STRAINWAVE_INLINE LaneMask operator!() const { return {~bits}; }
-  STRAINWAVE_INLINE bool any() const {
+  [[nodiscard]] STRAINWAVE_INLINE bool any() const {
 #if STRAINWAVE_LANE_LEVEL == 3
-    return _mm256_movemask_epi8(reinterpret_cast<__m256i>(bits)) != 0;
+    return _mm256_movemask_epi8(__builtin_bit_cast(__m256i, bits)) != 0;
 #elif STRAINWAVE_HAS_X86_LEVELS
-    return _mm_movemask_epi8(reinterpret_cast<__m128i>(bits)) != 0;
+    return _mm_movemask_epi8(__builtin_bit_cast(__m128i, bits)) != 0;
 #elif defined(__aarch64__)
-    return vmaxvq_u32(reinterpret_cast<uint32x4_t>(bits)) != 0;
+    return vmaxvq_u32(__builtin_bit_cast(uint32x4_t, bits)) != 0;
 #else
     bool found = false;
     for (std::size_t i = 0; i < STRAINWAVE_LANE_BYTES / sizeof(Real); ++i) {
@@ -56,7 +56,7 @@ struct LaneMask {
     return found;
 #endif
   }
-  STRAINWAVE_INLINE bool all() const { return !(!*this).any(); }
+  [[nodiscard]] STRAINWAVE_INLINE bool all() const { return !(!*this).any(); }
 #endif
 };
 
@@ -65,14 +65,14 @@ template <class RealT>
 struct Lanes {
   using Real = RealT;
   using Mask = LaneMask<Real>;
-  using Vector = typename LaneVectors<Real>::Reals;
+  using Vector = LaneVectors<Real>::Reals;
   static constexpr std::size_t count = STRAINWAVE_LANE_BYTES / sizeof(Real);
 
   Vector v;
 
   Lanes() = default;
-  STRAINWAVE_INLINE Lanes(Vector vector) : v(vector) {}  // NOLINT(google-explicit-constructor)
-  STRAINWAVE_INLINE Lanes(Real value) : v(value - Vector{}) {}  // NOLINT(google-explicit-*)
+  STRAINWAVE_INLINE Lanes(Vector vector) : v(vector) {}         // NOLINT(*-explicit-*)
+  STRAINWAVE_INLINE Lanes(Real value) : v(value - Vector{}) {}  // NOLINT(*-explicit-*)
 
   STRAINWAVE_INLINE static Lanes load(const Real* from) {
     Vector vector;
@@ -174,10 +174,10 @@ STRAINWAVE_INLINE Lanes<Real> select(LaneMask<Real> mask, Lanes<Real> yes, Lanes
 template <class Real>
 STRAINWAVE_INLINE Lanes<Real> absolute(Lanes<Real> value) {
   using Vectors = LaneVectors<Real>;
-  using Wholes = typename Vectors::Wholes;
+  using Wholes = Vectors::Wholes;
   constexpr auto sign = std::numeric_limits<typename Vectors::Whole>::min();
-  return reinterpret_cast<typename Vectors::Reals>(reinterpret_cast<Wholes>(value.v) &
-                                                   (~sign - Wholes{}));
+  return __builtin_bit_cast(typename Vectors::Reals,
+                            __builtin_bit_cast(Wholes, value.v) & (~sign - Wholes{}));
 }
 
 /// The larger of two numbers; the second where either is not a number.
@@ -250,12 +250,12 @@ STRAINWAVE_INLINE CosSin<Lanes<Real>> cos_sin_reduced(Lanes<Real> angle_rad) {
 template <class Real>
 STRAINWAVE_INLINE CosSin<Lanes<Real>> cos_sin_of_radians(Lanes<Real> angle_rad) {
   using L = Lanes<Real>;
-  using Wholes = typename LaneVectors<Real>::Wholes;
+  using Wholes = LaneVectors<Real>::Wholes;
   // Rounding to a whole number of quarter turns by a number so large that its last digit is one.
   constexpr Real rounder = Real(1.5) / std::numeric_limits<Real>::epsilon();
   const L shifted = fused(angle_rad, L(Real(2) / pi<Real>), L(rounder));
   const L quarters = shifted - L(rounder);
-  const auto whole = reinterpret_cast<Wholes>(shifted.v);
+  const auto whole = __builtin_bit_cast(Wholes, shifted.v);
   L rest = angle_rad;
   if constexpr (sizeof(Real) == 4) {
     rest = fused_minus(quarters, L(1.5703125F), rest);
@@ -272,12 +272,12 @@ STRAINWAVE_INLINE CosSin<Lanes<Real>> cos_sin_of_radians(Lanes<Real> angle_rad) 
   constexpr int sign_shift = 8 * static_cast<int>(sizeof(Real)) - 2;
   const Wholes sine_sign = (whole & 2) << sign_shift;
   const Wholes cosine_sign = ((whole + 1) & 2) << sign_shift;
-  const auto cosine_bits = reinterpret_cast<Wholes>(part.cosine.v);
-  const auto sine_bits = reinterpret_cast<Wholes>(part.sine.v);
+  const auto cosine_bits = __builtin_bit_cast(Wholes, part.cosine.v);
+  const auto sine_bits = __builtin_bit_cast(Wholes, part.sine.v);
   const Wholes turned_cosine = ((cosine_bits & ~odd) | (sine_bits & odd)) ^ cosine_sign;
   const Wholes turned_sine = ((sine_bits & ~odd) | (cosine_bits & odd)) ^ sine_sign;
-  using Vector = typename L::Vector;
-  return {L(reinterpret_cast<Vector>(turned_cosine)), L(reinterpret_cast<Vector>(turned_sine))};
+  using Vector = L::Vector;
+  return {L(__builtin_bit_cast(Vector, turned_cosine)), L(__builtin_bit_cast(Vector, turned_sine))};
 }
 
 #undef STRAINWAVE_INLINE
