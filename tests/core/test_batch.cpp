@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "batch_examples.hpp"
+#include "strainwave/batch_interleaved.hpp"
 
 namespace {
 
@@ -247,6 +248,51 @@ TYPED_TEST(BatchOf, ChannelsByAngleComeOutAsByStep) {
     const auto reading = strainwave::step(config, state, sample);
     ASSERT_EQ(fleet.logs[0].clean_Nm[k], reading.torque_Nm) << k;
     ASSERT_EQ(fleet.logs[0].status[k], reading.status) << k;
+  }
+}
+
+TYPED_TEST(BatchOf, SideBySideInMemoryIsTheSame) {
+  using Real = TypeParam;
+  constexpr std::size_t width = strainwave::block_width<Real>;
+  constexpr std::size_t samples = 700;
+  const std::size_t channels = 2 * width + 3;
+  Fleet<Real> alone;
+  for (std::size_t i = 0; i < channels; ++i) {
+    alone.add(joint<Real>(6 * i + i % 4), wild_log<Real>(3 * i, samples));
+  }
+  Fleet<Real> fleet = alone;
+  alone.process({.level = VectorLevel::one_by_one});
+  std::vector<Real> torque_Nm(3 * width * samples);
+  std::vector<Real> speed_rad_s(3 * width * samples);
+  const auto place = [](std::size_t channel, std::size_t k) {
+    return (channel / width * samples + k) * width + channel % width;
+  };
+  for (std::size_t i = 0; i < channels; ++i) {
+    for (std::size_t k = 0; k < samples; ++k) {
+      torque_Nm[place(i, k)] = fleet.logs[i].torque_Nm[k];
+      speed_rad_s[place(i, k)] = fleet.logs[i].speed_rad_s[k];
+    }
+  }
+  for (const VectorLevel level : vector_levels()) {
+    Fleet<Real> run = fleet;
+    std::vector<Real> clean_Nm(3 * width * samples);
+    const strainwave::InterleavedRecording<Real> recording = {
+        .sample_count = samples,
+        .measured_torque_Nm = torque_Nm.data(),
+        .motor_speed_rad_s = speed_rad_s.data(),
+        .torque_Nm = clean_Nm.data()};
+    ASSERT_TRUE((strainwave::process_interleaved<Real, batch_orders>(
+        run.configs, run.states, recording, {.level = level, .thread_count = 2})));
+    for (std::size_t i = 0; i < channels; ++i) {
+      EXPECT_EQ(run.states[i].counters.faults, alone.states[i].counters.faults);
+      EXPECT_EQ(run.states[i].counters.samples, samples);
+      for (std::size_t k = 0; k < samples; ++k) {
+        ASSERT_NEAR(clean_Nm[place(i, k)], alone.logs[i].clean_Nm[k], tolerance_Nm<Real>);
+      }
+    }
+    run.configs[5] = joint<Real>(5);  // ten orders: no kernel
+    EXPECT_FALSE(
+        (strainwave::process_interleaved<Real, batch_orders>(run.configs, run.states, recording)));
   }
 }
 
