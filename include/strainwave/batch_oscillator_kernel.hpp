@@ -39,8 +39,7 @@ struct OscillatorGroup {
   L p[elements];
   L c[states];
   L pending_rad;
-  L needed_travel_rad;
-  L samples_without_update;
+  L travel_rad;
   L last_speed_rad_s;
   L smoothed_speed_rad_s;
   L last_torque_Nm;
@@ -64,8 +63,7 @@ struct OscillatorGroup {
     load_rows(p, memory.covariance_Nm2, lane, std::make_index_sequence<elements>{});
     load_rows(c, memory.output, lane, std::make_index_sequence<states>{});
     pending_rad = L::load(memory.pending_rotation_rad + lane);
-    needed_travel_rad = L::load(memory.needed_travel_rad + lane);
-    samples_without_update = L::load(memory.samples_without_update + lane);
+    travel_rad = L::load(memory.travel_rad + lane);
     last_speed_rad_s = L::load(memory.last_speed_rad_s + lane);
     smoothed_speed_rad_s = L::load(memory.smoothed_speed_rad_s + lane);
     last_torque_Nm = L::load(memory.last_torque_Nm + lane);
@@ -76,8 +74,7 @@ struct OscillatorGroup {
     store_rows(p, memory.covariance_Nm2, lane, std::make_index_sequence<elements>{});
     store_rows(c, memory.output, lane, std::make_index_sequence<states>{});
     pending_rad.store(memory.pending_rotation_rad + lane);
-    needed_travel_rad.store(memory.needed_travel_rad + lane);
-    samples_without_update.store(memory.samples_without_update + lane);
+    travel_rad.store(memory.travel_rad + lane);
     last_speed_rad_s.store(memory.last_speed_rad_s + lane);
     smoothed_speed_rad_s.store(memory.smoothed_speed_rad_s + lane);
     last_torque_Nm.store(memory.last_torque_Nm + lane);
@@ -119,23 +116,9 @@ struct OscillatorGroup {
     sine = scale * sine;
   }
 
-  /// The output row from here on and no rotation since it, for lanes that learned and for those
-  /// whose rotation has become long; what the others wait for.
   template <std::size_t... I>
-  STRAINWAVE_INLINE void take_or_wait(const Memory& memory, std::size_t lane, Mask learned,
-                                      Mask used, const L* now, std::index_sequence<I...>) {
-    constexpr auto most = static_cast<Real>(detail::most_samples_without_update);
-    constexpr auto longest_rad = static_cast<Real>(detail::longest_pending_rotation_rad);
-    const Mask is_long = absolute(pending_rad) > L(longest_rad);
-    const Mask taken = learned | is_long;
-    ((c[I] = select(taken, now[I], c[I])), ...);
-    pending_rad = select(taken, L(Real(0)), pending_rad);
-    const L counted = samples_without_update + L(Real(1));
-    const L waiting = select(counted > L(most), L(most), counted);
-    samples_without_update =
-        select(learned, L(Real(0)), select(used, samples_without_update, waiting));
-    needed_travel_rad = select(learned, L::load(memory.minimum_travel_rad + lane),
-                               select(is_long, L(Real(0)), needed_travel_rad));
+  STRAINWAVE_INLINE void take_all(const L* now, std::index_sequence<I...>) {
+    ((c[I] = now[I]), ...);
   }
 
   STRAINWAVE_INLINE void smooth_speed(const Memory& memory, std::size_t lane) {
@@ -268,7 +251,7 @@ template <class Real, class Memory>
 STRAINWAVE_INLINE Lanes<Real> say(const OscillatorEvents<Real>& events, Memory& memory,
                                   std::size_t lane) {
   Lanes<Real> status = Real(0);
-  const auto used = events.torque_usable & events.expected_usable;
+  const auto used = events.torque_usable & events.expected_usable & events.speed_usable;
   raise(!events.torque_usable, 0, memory.counts, lane, status);
   raise(!events.speed_usable, 1, memory.counts, lane, status);
   raise(!events.expected_usable, 2, memory.counts, lane, status);
@@ -276,7 +259,7 @@ STRAINWAVE_INLINE Lanes<Real> say(const OscillatorEvents<Real>& events, Memory& 
   raise(events.reset, 4, memory.counts, lane, status);
   raise(used & !events.moving, 5, memory.counts, lane, status);
   raise(events.above_nyquist, 6, memory.counts, lane, status);
-  raise(!(used & events.speed_usable), 7, memory.counts, lane, status);
+  raise(!used, 7, memory.counts, lane, status);
   memory.any_count = true;
   return status;
 }
@@ -335,10 +318,7 @@ STRAINWAVE_KERNEL std::size_t filter_usual(OscillatorLanes<Real, Orders>& memory
   Group group;
   group.load(memory, lane);
   const bool is_usual =
-      ((group.samples_without_update <= L(Real(0))) &
-       (group.needed_travel_rad >= minimum_travel_rad) &
-       (absolute(usual_order * group.pending_rad) <= L(detail::largest_reduced_rad<Real>)))
-          .all();
+      (absolute(usual_order * group.pending_rad) <= L(detail::largest_reduced_rad<Real>)).all();
   const Ahead<Real>* const ahead = lane == 0 ? tile.ahead : nullptr;
   const bool any_limit = memory.any_variance_limit;
   std::size_t k = start;
@@ -354,7 +334,7 @@ STRAINWAVE_KERNEL std::size_t filter_usual(OscillatorLanes<Real, Orders>& memory
     }
     const auto usable =
         (absolute(torque_Nm) <= largest_torque_Nm) & (absolute(expected_Nm) <= largest_torque_Nm) &
-        (absolute(group.pending_rad) >= minimum_travel_rad) &
+        (absolute(group.travel_rad) >= minimum_travel_rad) &
         (absolute(group.smoothed_speed_rad_s) >= L::load(memory.minimum_speed_rad_s + lane)) &
         (absolute(usual_order * rotation_rad) <= L(detail::largest_reduced_rad<Real>));
     if (!usable.all()) [[unlikely]] {
@@ -365,9 +345,7 @@ STRAINWAVE_KERNEL std::size_t filter_usual(OscillatorLanes<Real, Orders>& memory
     group.project(group.c, pc, by_state);
     const L variance_Nm2 = Group::product(pc, group.c, noise_Nm2, by_order);
     if (!is_healthy(variance_Nm2, noise_Nm2).all()) [[unlikely]] {
-      // The output row is that of this sample already, and the lane has travelled.
-      group.pending_rad = Real(0);
-      group.needed_travel_rad = Real(0);
+      group.pending_rad = Real(0);  // the output row is that of this sample already
       break;
     }
     const L ripple_Nm = Group::product(group.c, group.x, Real(0), by_order);
@@ -377,6 +355,7 @@ STRAINWAVE_KERNEL std::size_t filter_usual(OscillatorLanes<Real, Orders>& memory
     group.last_torque_Nm = clean_Nm;
     group.last_speed_rad_s = speed_rad_s;
     group.pending_rad = rotation_rad;
+    group.travel_rad = rotation_rad;
     group.smooth_speed(memory, lane);
     if (k % samples_in_a_row == 0) {
       group.correct_length(by_order);
@@ -423,9 +402,14 @@ STRAINWAVE_KERNEL void filter_any(OscillatorLanes<Real, Orders>& memory,
     events.torque_usable = absolute(torque_Nm) <= largest_torque_Nm;
     events.expected_usable = absolute(expected_Nm) <= largest_torque_Nm;
     events.moving =
-        (absolute(group.pending_rad) >= group.needed_travel_rad) &
+        (absolute(group.travel_rad) >= L::load(memory.minimum_travel_rad + lane)) &
         (absolute(group.smoothed_speed_rad_s) >= L::load(memory.minimum_speed_rad_s + lane));
-    const auto used = events.torque_usable & events.expected_usable;
+    const L speed_rad_s = place.speed_rad_s(k);
+    const L cycles = absolute(L::load(memory.highest_order + lane) *
+                              (speed_rad_s * L::load(memory.turns_period_s + lane)));
+    events.speed_usable = cycles <= L(detail::largest_rotation_turns<Real>);
+    events.above_nyquist = events.speed_usable & (cycles > L(Real(0.5)));
+    const auto used = events.torque_usable & events.expected_usable & events.speed_usable;
     const auto learned = used & events.moving;
     group.last_torque_Nm =
         select(events.torque_usable, torque_Nm - ripple_Nm, group.last_torque_Nm);
@@ -435,23 +419,18 @@ STRAINWAVE_KERNEL void filter_any(OscillatorLanes<Real, Orders>& memory,
     const L variance_Nm2 = Group::product(pc, now, noise_Nm2, by_order);
     const auto updated = learned & is_healthy(variance_Nm2, noise_Nm2);
     events.reset = learned & !updated;
-    const L samples = group.samples_without_update + L(Real(1));
     group.keep(updated, pc, by_state);
     group.reset_covariance(memory, lane, events.reset, by_state);
     group.template update<false>(memory, lane, pc,
                                  select(updated, L(Real(1)) / variance_Nm2, L(Real(0))),
                                  select(learned, torque_Nm - expected_Nm - ripple_Nm, L(Real(0))),
-                                 select(updated, samples, L(Real(0))), by_order);
+                                 select(updated | !used, L(Real(1)), L(Real(0))), by_order);
     events.limited = group.beyond_limit(memory, lane, by_order) & updated;
     group.limit_variance(memory, lane, events.limited, by_order);
-    group.take_or_wait(memory, lane, learned, used, now, by_state);
-
-    const L speed_rad_s = place.speed_rad_s(k);
-    const L turned_rad = absolute(L::load(memory.highest_order + lane) * (speed_rad_s * period_s));
-    events.speed_usable = turned_rad <= L(static_cast<Real>(largest_rotation_rad));
-    events.above_nyquist = events.speed_usable & (turned_rad > L(pi<Real>));
+    group.take_all(now, by_state);
     group.last_speed_rad_s = select(events.speed_usable, speed_rad_s, group.last_speed_rad_s);
-    group.pending_rad = group.pending_rad + group.last_speed_rad_s * period_s;
+    group.pending_rad = group.last_speed_rad_s * period_s;
+    group.travel_rad = select(learned, L(Real(0)), group.travel_rad) + group.pending_rad;
     group.smooth_speed(memory, lane);
     place.put(k, group.last_torque_Nm, ripple_Nm, say<Real>(events, memory, lane));
   }

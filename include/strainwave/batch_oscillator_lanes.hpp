@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <type_traits>
 
 #include "strainwave/batch_layout.hpp"
 #include "strainwave/oscillator_filter.hpp"
@@ -27,6 +28,7 @@ struct alignas(64) OscillatorLanes {
   Row measurement_noise_variance_Nm2;
   Row initial_variance_Nm2[Orders];  ///< 0 for an order that the lane does not have
   Row sample_period_s;
+  Row turns_period_s;  ///< sample period / 2 pi
   Row highest_order;
   /// Times the rotation from one sample to the next: where this stays below largest_reduced_rad no
   /// angle has to be reduced and no order turns half a cycle.
@@ -37,10 +39,9 @@ struct alignas(64) OscillatorLanes {
 
   Row states_Nm[states];
   Row covariance_Nm2[states * (states + 1) / 2];
-  Row output[states];  ///< cosine and sine of each order
-  Row pending_rotation_rad;
-  Row needed_travel_rad;  ///< 0 once part of the rotation was applied without an update
-  Row samples_without_update;
+  Row output[states];        ///< cosine and sine of each order
+  Row pending_rotation_rad;  ///< of the motor since `output`
+  Row travel_rad;            ///< since the last update
   Row last_speed_rad_s;
   Row smoothed_speed_rad_s;
   Row last_torque_Nm;
@@ -110,13 +111,26 @@ inline void put_config(OscillatorLanes<Real, Orders>& lanes, std::size_t lane,
   }
   lanes.measurement_noise_variance_Nm2[lane] = config.measurement_noise_variance_Nm2;
   lanes.sample_period_s[lane] = config.sample_period_s;
+  lanes.turns_period_s[lane] = config.sample_period_s / two_pi<Real>;
   lanes.highest_order[lane] = highest_order(config);
   lanes.usual_order[lane] = usual_order(config);
   lanes.minimum_travel_rad[lane] = config.minimum_travel_rad;
   lanes.minimum_speed_rad_s[lane] = config.minimum_speed_rad_s;
-  lanes.speed_share[lane] =
-      config.sample_period_s / (config.sample_period_s + static_cast<Real>(speed_smoothing_s));
+  lanes.speed_share[lane] = config.minimum_speed_rad_s == Real(0)
+                                ? Real(1)
+                                : config.sample_period_s / (config.sample_period_s +
+                                                            static_cast<Real>(speed_smoothing_s));
   lanes.any_variance_limit = lanes.any_variance_limit || is_limited;
+}
+
+/// Cosine and sine of an order's present angle.
+template <class Real, std::size_t MaxOrders>
+[[nodiscard]] constexpr CosSin<Real> wave_of(const OscillatorFilterConfig<Real, MaxOrders>& config,
+                                             const OscillatorFilterState<Real, MaxOrders>& state,
+                                             std::size_t order) {
+  const std::size_t half = half_of(config, order);
+  return half < order ? doubled(wave_of(config, state, half))
+                      : cos_sin_of_fraction<Real>(state.angle[order]);
 }
 
 /// One lane's state.
@@ -128,17 +142,16 @@ inline void put_state(OscillatorLanes<Real, Orders>& lanes, std::size_t lane,
   for (std::size_t i = 0; i < 2 * Orders; ++i) {
     const bool is_used = i < used;
     lanes.states_Nm[i][lane] = is_used ? state.states_Nm[i] : Real(0);
-    const CosSin<Real> wave = is_used ? state.output[i / 2] : CosSin<Real>{Real(0), Real(0)};
+    const CosSin<Real> wave =
+        is_used ? wave_of(config, state, i / 2) : CosSin<Real>{Real(0), Real(0)};
     lanes.output[i][lane] = i % 2 == 0 ? wave.cosine : wave.sine;
     for (std::size_t j = 0; j <= i; ++j) {
-      lanes.covariance_Nm2[packed_index(i, j)][lane] =
-          is_used ? state.covariance_Nm2[packed_index(i, j)] : Real(0);
+      lanes.covariance_Nm2[i * (i + 1) / 2 + j][lane] =
+          is_used ? state.covariance_Nm2[j][i] : Real(0);
     }
   }
-  lanes.pending_rotation_rad[lane] = state.pending_rotation_rad;
-  lanes.needed_travel_rad[lane] =
-      state.rotated_without_update ? Real(0) : config.minimum_travel_rad;
-  lanes.samples_without_update[lane] = static_cast<Real>(state.samples_without_update);
+  lanes.pending_rotation_rad[lane] = Real(0);
+  lanes.travel_rad[lane] = state.travel_rad;
   lanes.last_speed_rad_s[lane] = state.last_speed_rad_s;
   lanes.smoothed_speed_rad_s[lane] = state.smoothed_speed_rad_s;
   lanes.last_torque_Nm[lane] = state.last_torque_Nm;
@@ -152,17 +165,25 @@ template <class Real, std::size_t Orders, std::size_t MaxOrders>
 inline void take_state(const OscillatorLanes<Real, Orders>& lanes, std::size_t lane,
                        const OscillatorFilterConfig<Real, MaxOrders>& config,
                        OscillatorFilterState<Real, MaxOrders>& state) {
-  for (std::size_t i = 0; i < 2 * active_orders(config); ++i) {
+  using Fraction = typename OscillatorFilterState<Real, MaxOrders>::Fraction;
+  using Signed = std::make_signed_t<Fraction>;
+  const std::size_t count = 2 * active_orders(config);
+  for (std::size_t i = 0; i < count; ++i) {
     state.states_Nm[i] = lanes.states_Nm[i][lane];
-    Real& wave = i % 2 == 0 ? state.output[i / 2].cosine : state.output[i / 2].sine;
-    wave = lanes.output[i][lane];
     for (std::size_t j = 0; j <= i; ++j) {
-      state.covariance_Nm2[packed_index(i, j)] = lanes.covariance_Nm2[packed_index(i, j)][lane];
+      state.covariance_Nm2[j][i] = lanes.covariance_Nm2[i * (i + 1) / 2 + j][lane];
     }
   }
-  state.pending_rotation_rad = lanes.pending_rotation_rad[lane];
-  state.rotated_without_update = lanes.needed_travel_rad[lane] != config.minimum_travel_rad;
-  state.samples_without_update = static_cast<std::uint32_t>(lanes.samples_without_update[lane]);
+  mirror(count, state.covariance_Nm2);
+  for (std::size_t a = 0; a < active_orders(config); ++a) {
+    // The output row is that of the last sample; the state's angle is that of the next one.
+    constexpr Real half_range = Real(2) * static_cast<Real>(Fraction{1} << (sizeof(Real) * 8 - 2));
+    const Real turns = angle_of(lanes.output[2 * a][lane], lanes.output[2 * a + 1][lane]) *
+                       (Real(0.9999999) / two_pi<Real>);
+    state.angle[a] = 2U * static_cast<Fraction>(static_cast<Signed>(turns * half_range));
+  }
+  turn_on(config, state, lanes.pending_rotation_rad[lane] / two_pi<Real>, false);
+  state.travel_rad = lanes.travel_rad[lane];
   state.last_speed_rad_s = lanes.last_speed_rad_s[lane];
   state.smoothed_speed_rad_s = lanes.smoothed_speed_rad_s[lane];
   state.last_torque_Nm = lanes.last_torque_Nm[lane];

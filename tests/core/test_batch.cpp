@@ -67,9 +67,8 @@ void expect_same(const Fleet<Real>& fleet, const Fleet<Real>& expected, VectorLe
     const Log<Real>& log = fleet.logs[i];
     EXPECT_EQ(log.status, expected.logs[i].status) << "channel " << i;
     for (std::size_t k = 0; k < log.clean_Nm.size(); ++k) {
-      const double torque_Nm = static_cast<double>(log.clean_Nm[k] - expected.logs[i].clean_Nm[k]);
-      const double ripple_Nm =
-          static_cast<double>(log.ripple_Nm[k] - expected.logs[i].ripple_Nm[k]);
+      const auto torque_Nm = static_cast<double>(log.clean_Nm[k] - expected.logs[i].clean_Nm[k]);
+      const auto ripple_Nm = static_cast<double>(log.ripple_Nm[k] - expected.logs[i].ripple_Nm[k]);
       ASSERT_TRUE(std::isfinite(torque_Nm) && std::isfinite(ripple_Nm)) << i << ", " << k;
       worst_Nm = std::fmax(worst_Nm, std::fmax(std::fabs(torque_Nm), std::fabs(ripple_Nm)));
     }
@@ -140,7 +139,7 @@ TYPED_TEST(BatchOf, ABadChannelChangesNoBitOfAnother) {
         spoilt.logs[6].speed_rad_s[k] = bad;
       }
       spoilt.states[9].states_Nm[1] = bad;
-      spoilt.states[10].covariance_Nm2[2] = bad;
+      spoilt.states[10].covariance_Nm2[1][1] = bad;
       clean.process({.level = level});
       spoilt.process({.level = level});
       for (std::size_t i = 0; i < 16; ++i) {
@@ -180,8 +179,8 @@ TYPED_TEST(BatchOf, LossOfTheCovariancesSignIsMetAsByStep) {
       fleet.add(joint<Real>(i % 3), quiet_log<Real>(4 * i, 300));
     }
     fleet.process({.level = VectorLevel::one_by_one}, 0, 100);
-    fleet.states[3].covariance_Nm2[0] = Real(-1e6);
-    fleet.states[11].covariance_Nm2[2] = std::numeric_limits<Real>::quiet_NaN();
+    fleet.states[3].covariance_Nm2[0][0] = Real(-1e6);
+    fleet.states[11].covariance_Nm2[1][1] = std::numeric_limits<Real>::quiet_NaN();
     Fleet<Real> alone = fleet;
     alone.process({.level = VectorLevel::one_by_one}, 100, 300);
     fleet.process({.level = level}, 100, 300);

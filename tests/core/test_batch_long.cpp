@@ -42,7 +42,7 @@ Filtered filtered(const BatchConfig<float>& config, const Log<float>& log,
 double rms_difference_Nm(const Log<float>& a, const Log<float>& b) {
   double sum = 0.0;
   for (std::size_t k = 0; k < a.clean_Nm.size(); ++k) {
-    const double difference = static_cast<double>(a.clean_Nm[k] - b.clean_Nm[k]);
+    const auto difference = static_cast<double>(a.clean_Nm[k] - b.clean_Nm[k]);
     sum += difference * difference;
   }
   return std::sqrt(sum / static_cast<double>(a.clean_Nm.size()));
@@ -51,7 +51,7 @@ double rms_difference_Nm(const Log<float>& a, const Log<float>& b) {
 TEST(BatchLong, AWrongStartIsForgottenByAFactorOfEAMemory) {
   // Theory: the steady state of the Riccati equation forgets at sqrt(q / 2 R) a sample where the
   // motor turns many times within a memory.
-  auto config = tuned<double, 12>(2);
+  const auto config = tuned<double, 12>(2);
   const strainwave::detail::OscillatorMemory memory = strainwave::detail::memory_of(config);
   EXPECT_DOUBLE_EQ(memory.samples, std::sqrt(2.0 / 1e-4));
   EXPECT_DOUBLE_EQ(memory.travel_rad, 0.5);

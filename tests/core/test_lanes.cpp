@@ -93,7 +93,8 @@ TYPED_TEST(LanesOf, ComparisonAndSelectionAreThoseOfSingleNumbers) {
   expect_same()
   const auto expect_same = [&] {
     for (std::size_t i = 0; i < a.size(); ++i) {
-      const Real expected = a[i] < b[i] ? std::sqrt(std::fabs(a[i])) : (a[i] > b[i] ? a[i] : b[i]);
+      const Real larger = a[i] > b[i] ? a[i] : b[i];
+      const Real expected = a[i] < b[i] ? std::sqrt(std::fabs(a[i])) : larger;
       EXPECT_TRUE(result[i] == expected || (std::isnan(result[i]) && std::isnan(expected)))
           << a[i] << ", " << b[i] << ": " << result[i];
     }
