@@ -27,6 +27,7 @@ AS_THE_CORE = {
     "noise_shared": True,
     "noise_in_turn": True,
     "gaps_bridged": True,
+    "rest_is_exact": True,
 }
 
 

@@ -59,6 +59,9 @@ class ReferenceSettings:
     gaps_bridged : bool
         Whether an interval of over two typical ones brings the process noise of the typical ones in
         it, as in the core.
+    rest_is_exact : bool
+        Whether no rotation at all brings no process noise, as in the core; else it brings the limit
+        of that of ever smaller rotations.
     """
 
     terms: Sequence[tuple[float, str]]
@@ -76,6 +79,7 @@ class ReferenceSettings:
     noise_shared: bool = False
     noise_in_turn: bool = False
     gaps_bridged: bool = False
+    rest_is_exact: bool = False
 
 
 #: Time constants of the low-passes: of the speed that says whether the motor moves, of that in the
@@ -210,6 +214,8 @@ class _ProcessNoise:
         settings = self._settings
         R = settings.torque_noise_Nm**2
         walk = settings.torque_walk_Nm_per_sqrt_s**2
+        if settings.rest_is_exact and turned_rad == 0.0:
+            walk = 0.0
         pieces = 1.0
         if settings.gaps_bridged and 0.0 < LEAST_GAP * self._typical_s < dt_s:
             pieces = dt_s / self._typical_s

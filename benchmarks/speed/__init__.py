@@ -1,0 +1,1 @@
+"""How fast the filters are: beside peers, beside this machine's limit, in one run on the same data."""
