@@ -17,26 +17,32 @@ namespace speed {
 
 /// A case that has its inputs ready.
 struct Case {
-  /// Filters so many samples from the start; returns how many channel-samples that were.
+  /// Filters so many samples of each channel from the start; returns how many that were together.
   std::function<std::size_t(std::size_t)> run;
   /// Ripple of the last run's first channel, Nm.
   std::function<std::vector<double>()> ripple_Nm;
+  /// Makes the inputs for so many samples, outside of the time that is taken.
+  std::function<void(std::size_t)> prepare = [](std::size_t /*samples*/) {};
   /// What is to be said beside the time, JSON members each after a comma.
   std::function<std::string()> remarks = [] { return std::string{}; };
 };
 
+/// What follows a case's name: batch_published:channels=64:threads=2.
+using Options = std::map<std::string, std::string>;
+
+[[nodiscard]] inline std::size_t number(const Options& options, const std::string& name,
+                                        std::size_t otherwise) {
+  const auto found = options.find(name);
+  return found == options.end() ? otherwise : std::stoul(found->second);
+}
+
 /// What makes each case from the recording, by name.
-using Cases = std::map<std::string, std::function<Case(const Recording&)>>;
+using Cases = std::map<std::string, std::function<Case(const Recording&, const Options&)>>;
 
-void add_published(Cases& cases);
-void add_default(Cases& cases);
-void add_published_eigen(Cases& cases);
-void add_default_eigen(Cases& cases);
-void add_states(Cases& cases);
-void add_batch(Cases& cases);
-void add_long_log(Cases& cases);
+/// All cases of a program.
+[[nodiscard]] Cases all_cases();
 
-/// A case of one channel: `filter` goes over signals and writes the ripple.
+/// A case of one channel: `filter` goes over its inputs and writes the ripple.
 template <class Real, class Filter>
 Case single_channel(std::vector<Real> ripple_Nm, Filter filter) {
   auto ripple = std::make_shared<std::vector<Real>>(std::move(ripple_Nm));

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "case.hpp"
+#include "cases.hpp"
 
 namespace speed {
 
@@ -169,7 +169,7 @@ class DenseRipple {
 };
 
 template <class Real>
-Case dense(const Recording& recording) {
+Case dense(const Recording& recording, const Options& /*options*/) {
   return single_channel(
       std::vector<Real>(recording.samples()),
       [torque = converted<Real>(recording.torque_Nm), angle = recording.motor_angle_rad](

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "case.hpp"
 #include "inputs.hpp"
 #include "strainwave/oscillator_filter.hpp"
 #include "strainwave/ripple_filter.hpp"
@@ -33,25 +34,63 @@ template <class Real>
 inline constexpr strainwave::RippleFilterConfig<Real, 7> default_15 =
     default_configuration<Real>();
 
-/// Samples as the filters take them, made before anything is timed, as a driver delivers them.
-template <class Real>
-std::vector<strainwave::OscillatorSample<Real>> oscillator_samples(const Recording& recording) {
-  std::vector<strainwave::OscillatorSample<Real>> samples(recording.samples());
-  for (std::size_t k = 0; k < samples.size(); ++k) {
-    samples[k].measured_torque_Nm = static_cast<Real>(recording.torque_Nm[k]);
-    samples[k].motor_speed_rad_s = static_cast<Real>(recording.motor_speed_rad_s[k]);
+/// Angles as an encoder delivers them.
+inline std::vector<strainwave::Phase> phases(const Recording& recording) {
+  std::vector<strainwave::Phase> phases;
+  for (const double angle_rad : recording.motor_angle_rad) {
+    phases.push_back(strainwave::phase_from_radians(angle_rad));
   }
-  return samples;
+  return phases;
 }
-template <class Real>
-std::vector<strainwave::RippleSample<Real>> ripple_samples(const Recording& recording) {
-  std::vector<strainwave::RippleSample<Real>> samples(recording.samples());
-  for (std::size_t k = 0; k < samples.size(); ++k) {
-    samples[k].measured_torque_Nm = static_cast<Real>(recording.torque_Nm[k]);
-    samples[k].motor_phase = strainwave::phase_from_radians(recording.motor_angle_rad[k]);
-    samples[k].interval_s = static_cast<Real>(sample_period_s);
+
+/// The published filter over arrays, sample by sample, as a control loop calls it.
+template <class Config, class Real>
+void filter_published(const Config& config, const Real* torque_Nm, const Real* speed_rad_s,
+                      std::size_t samples, Real* ripple_Nm) {
+  auto state = strainwave::initial_state(config);
+  for (std::size_t k = 0; k < samples; ++k) {
+    strainwave::OscillatorSample<Real> sample;
+    sample.measured_torque_Nm = torque_Nm[k];
+    sample.motor_speed_rad_s = speed_rad_s[k];
+    ripple_Nm[k] = strainwave::step(config, state, sample).ripple_Nm;
   }
-  return samples;
+}
+
+/// The default filter, likewise.
+template <class Config, class Real>
+void filter_default(const Config& config, const Real* torque_Nm, const strainwave::Phase* phases,
+                    std::size_t samples, Real* ripple_Nm) {
+  auto state = strainwave::initial_state(config);
+  for (std::size_t k = 0; k < samples; ++k) {
+    strainwave::RippleSample<Real> sample;
+    sample.measured_torque_Nm = torque_Nm[k];
+    sample.motor_phase = phases[k];
+    sample.interval_s = static_cast<Real>(sample_period_s);
+    ripple_Nm[k] = strainwave::step(config, state, sample).ripple_Nm;
+  }
+}
+
+/// A case of one channel with the published filter.  `config_of()` returns the configuration: a
+/// constant known to the compiler, or one that is not.
+template <class Real, class ConfigOf>
+Case published_case(const Recording& recording, const ConfigOf& config_of) {
+  return single_channel(
+      std::vector<Real>(recording.samples()),
+      [config_of, torque = converted<Real>(recording.torque_Nm),
+       speed = converted<Real>(recording.motor_speed_rad_s)](std::size_t samples, Real* ripple_Nm) {
+        filter_published(config_of(), torque.data(), speed.data(), samples, ripple_Nm);
+      });
+}
+
+/// A case of one channel with the default filter.
+template <class Real, class ConfigOf>
+Case default_case(const Recording& recording, const ConfigOf& config_of) {
+  return single_channel(
+      std::vector<Real>(recording.samples()),
+      [config_of, torque = converted<Real>(recording.torque_Nm), angle = phases(recording)](
+          std::size_t samples, Real* ripple_Nm) {
+        filter_default(config_of(), torque.data(), angle.data(), samples, ripple_Nm);
+      });
 }
 
 }  // namespace speed

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// strainwave_speed CASE INPUTS: one case, told what to do by lines, answers in lines of JSON.
-// strainwave_speed --list: the cases there are.
+// PROGRAM CASE[:OPTION=VALUE...] INPUTS: one case, told what to do by lines, answers in lines of
+// JSON. PROGRAM --list: the cases there are.
 #include <chrono>
 #include <cstdio>
 #include <fstream>
@@ -12,22 +12,13 @@
 
 namespace {
 
-speed::Cases all_cases() {
-  speed::Cases cases;
-  speed::add_published(cases);
-  speed::add_default(cases);
-  speed::add_published_eigen(cases);
-  speed::add_default_eigen(cases);
-  speed::add_states(cases);
-  return cases;
-}
-
 double now_s() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
 /// time SAMPLES SECONDS: runs until so much time has passed.
 void time(const speed::Case& timed, std::size_t samples, double least_s) {
+  timed.prepare(samples);
   std::size_t done = 0;
   int runs = 0;
   const double began_s = now_s();
@@ -43,6 +34,7 @@ void time(const speed::Case& timed, std::size_t samples, double least_s) {
 
 /// write SAMPLES FILE: the ripple as doubles.
 void write(const speed::Case& timed, std::size_t samples, const std::string& path) {
+  timed.prepare(samples);
   timed.run(samples);
   const auto ripple_Nm = timed.ripple_Nm();
   std::ofstream(path, std::ios::binary)
@@ -51,21 +43,36 @@ void write(const speed::Case& timed, std::size_t samples, const std::string& pat
   std::printf("{\"samples\": %zu}\n", ripple_Nm.size());
 }
 
+/// Takes the options off a case's name.
+speed::Options options_of(std::string& name) {
+  speed::Options options;
+  std::istringstream parts(name);
+  std::getline(parts, name, ':');
+  for (std::string part; std::getline(parts, part, ':');) {
+    const std::size_t equals = part.find('=');
+    options[part.substr(0, equals)] = part.substr(equals + 1);
+  }
+  return options;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
-  const speed::Cases cases = all_cases();
+  const speed::Cases cases = speed::all_cases();
   if (argc == 2 && std::string(argv[1]) == "--list") {
     for (const auto& each : cases) {
       std::puts(each.first.c_str());
     }
     return 0;
   }
-  if (argc != 3 || !cases.contains(argv[1])) {
-    std::fputs("usage: strainwave_speed CASE INPUTS, CASE from strainwave_speed --list\n", stderr);
+  std::string name = argc == 3 ? argv[1] : "";
+  const speed::Options options = options_of(name);
+  if (!cases.contains(name)) {
+    std::fprintf(stderr, "usage: %s CASE[:OPTION=VALUE...] INPUTS; cases: %s --list\n", argv[0],
+                 argv[0]);
     return 2;
   }
-  const speed::Case timed = cases.at(argv[1])(speed::read_recording(argv[2]));
+  const speed::Case timed = cases.at(name)(speed::read_recording(argv[2]), options);
   std::printf("{\"version\": \"%s\"}\n", SPEED_VERSION);
   std::fflush(stdout);
   for (std::string line; std::getline(std::cin, line);) {

@@ -3,7 +3,7 @@
 #include <Eigen/Dense>
 #include <cmath>
 
-#include "case.hpp"
+#include "cases.hpp"
 
 namespace speed {
 
@@ -39,7 +39,7 @@ struct DenseFilter {
 };
 
 template <class Real>
-Case dense(const Recording& recording) {
+Case dense(const Recording& recording, const Options& /*options*/) {
   return single_channel(
       std::vector<Real>(recording.samples()),
       [torque = converted<Real>(recording.torque_Nm),

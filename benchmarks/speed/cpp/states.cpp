@@ -3,7 +3,7 @@
 #include <string>
 #include <utility>
 
-#include "case.hpp"
+#include "cases.hpp"
 #include "filters.hpp"
 
 namespace speed {
@@ -31,27 +31,18 @@ constexpr strainwave::RippleFilterConfig<float, Pairs> default_with() {
   return config;
 }
 
-template <class Config, class Samples>
-Case with_states(const Recording& recording, const Config& config, const Samples& inputs) {
-  return single_channel(std::vector<float>(recording.samples()),
-                        [config, inputs](std::size_t samples, float* ripple_Nm) {
-                          auto state = strainwave::initial_state(config);
-                          for (std::size_t k = 0; k < samples; ++k) {
-                            ripple_Nm[k] = strainwave::step(config, state, inputs[k]).ripple_Nm;
-                          }
-                        });
-}
-
 template <std::size_t Orders>
 void add_published_of(Cases& cases) {
-  cases["states_published_" + std::to_string(2 * Orders)] = [](const Recording& recording) {
-    return with_states(recording, published_with<Orders>(), oscillator_samples<float>(recording));
+  cases["states_published_" + std::to_string(2 * Orders)] = [](const Recording& recording,
+                                                               const Options& /*options*/) {
+    return published_case<float>(recording, [config = published_with<Orders>()] { return config; });
   };
 }
 template <std::size_t Pairs>
 void add_default_of(Cases& cases) {
-  cases["states_default_" + std::to_string(1 + 2 * Pairs)] = [](const Recording& recording) {
-    return with_states(recording, default_with<Pairs>(), ripple_samples<float>(recording));
+  cases["states_default_" + std::to_string(1 + 2 * Pairs)] = [](const Recording& recording,
+                                                                const Options& /*options*/) {
+    return default_case<float>(recording, [config = default_with<Pairs>()] { return config; });
   };
 }
 

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+// Cases that are compiled for this very machine: one channel, the core beside Eigen.
+#include "cases.hpp"
+
+namespace speed {
+
+Cases all_cases() {
+  Cases cases;
+  add_core(cases);
+  add_states(cases);
+  add_sequential(cases);
+  add_published_eigen(cases);
+  add_default_eigen(cases);
+  return cases;
+}
+
+}  // namespace speed
