@@ -1,0 +1,154 @@
+"""One filter's implementations beside each other: agreement first, then interleaved rounds."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from contextlib import ExitStack
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Final
+
+import numpy as np
+
+from benchmarks.speed.agreement import agreement
+from benchmarks.speed.bounds import flops_ns
+from benchmarks.speed.implementations import BATCH_CHANNELS, Implementation, start
+from benchmarks.speed.inputs import Array
+from benchmarks.speed.programs import Programs
+from benchmarks.speed.rounds import Effort, ratio, timed
+from benchmarks.speed.worker_process import NotAvailableError, Worker
+
+#: Samples of one channel in a run, and of each of many channels.
+_SINGLE_SAMPLES: Final = 50_000
+_BATCH_SAMPLES: Final = 20_000
+
+
+@dataclass(frozen=True)
+class Setting:
+    """What all comparisons have in common.
+
+    Attributes
+    ----------
+    programs : Programs
+        What there is.
+    inputs : Path
+        The recording, written.
+    references : mapping
+        Ripple of the dense references by filter.
+    limits : mapping
+        From `benchmarks.speed.machine.limits`.
+    level : str
+        Best vector level.
+    effort : Effort
+        How long.
+    say : callable
+        Takes the progress.
+    """
+
+    programs: Programs
+    inputs: Path
+    references: Mapping[str, Array]
+    limits: Mapping[str, Any]
+    level: str
+    effort: Effort
+    say: Callable[[str], None]
+
+
+def _row(each: Implementation) -> dict[str, Any]:
+    return {
+        "filter": each.filter,
+        "name": each.name,
+        "what": each.what,
+        "precision": each.precision,
+        "channels": each.channels,
+        "cores": each.cores,
+        "version": None,
+        "difference_rms_Nm": None,
+        "ns_per_sample": None,
+        "ratio": None,
+        "peak_memory_bytes": None,
+        "share_of_limit": None,
+        "not_available": None,
+    }
+
+
+def _agrees(each: Implementation, worker: Worker, row: dict[str, Any], setting: Setting) -> bool:
+    reference = setting.references[each.filter]
+    ripple = worker.ripple_Nm(len(reference), setting.inputs)
+    found = agreement(each.filter, each.precision, ripple, reference)
+    row["version"] = worker.version
+    row["difference_rms_Nm"] = found.difference_rms_Nm if np.isfinite(ripple).all() else None
+    if not found.ok:
+        row["not_available"] = (
+            f"it disagrees with the dense reference by {found.difference_rms_Nm:.2g} Nm rms, "
+            f"{found.tolerance_Nm:.2g} are allowed, and was not timed"
+        )
+    return found.ok
+
+
+def _level_of(each: Implementation, setting: Setting) -> str:
+    # A batch is held against the limit of its own level.
+    return next((lv for lv in ("v2", "v3", "v4") if f"level={lv}" in each.case), setting.level)
+
+
+def _limit_ns(each: Implementation, setting: Setting) -> float:
+    level = _level_of(each, setting)
+    return flops_ns(each.filter, level, each.precision, setting.limits) / each.cores
+
+
+def _time(
+    workers: dict[Implementation, Worker], setting: Setting
+) -> dict[Implementation, list[float]]:
+    # Single channels and batches differ in the length of a run only.
+    found: dict[str, list[float]] = {}
+    by_key = {each.key: worker for each, worker in workers.items()}
+    batch = {each.key for each in workers if each.channels == BATCH_CHANNELS}
+    most = {key: _BATCH_SAMPLES if key in batch else _SINGLE_SAMPLES for key in by_key}
+    found = timed(by_key, most, setting.effort, setting.say)
+    return {each: found[each.key] for each in workers}
+
+
+def compare(
+    implementations: Iterable[Implementation], setting: Setting
+) -> tuple[list[dict[str, Any]], dict[str, list[float]]]:
+    """Compare implementations of one filter.
+
+    Parameters
+    ----------
+    implementations : iterable of Implementation
+        The first one is what the others' ratios refer to.
+    setting : Setting
+        What it takes.
+
+    Returns
+    -------
+    list of dict
+        A row for each, those that are not available included.
+    dict of list of float
+        ns a sample in every round, by name.
+    """
+    rows = {each: _row(each) for each in implementations}
+    workers: dict[Implementation, Worker] = {}
+    with ExitStack() as stack:
+        for each, row in rows.items():
+            setting.say(f"{each.key}: does it agree?")
+            try:
+                worker = start(each, setting.programs, setting.inputs)
+                stack.callback(worker.close)
+                if _agrees(each, worker, row, setting):
+                    workers[each] = worker
+            except NotAvailableError as error:
+                row["not_available"] = str(error)
+            if row["not_available"]:
+                setting.say(f"{each.what} ({each.filter}): not available, {row['not_available']}")
+        times = _time(workers, setting)
+        first = times.get(next(iter(rows)))
+        for each, found in times.items():
+            median = float(np.median(found))
+            rows[each] |= {
+                "ns_per_sample": median,
+                "ratio": None if first is None else ratio(found, first),
+                "peak_memory_bytes": workers[each].peak_memory_bytes,
+                "share_of_limit": _limit_ns(each, setting) / median,
+            }
+    return list(rows.values()), {each.name: found for each, found in times.items()}
