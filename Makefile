@@ -59,13 +59,17 @@ $(VENV)/.package: $(VENV)/.requirements build/package_sources.txt $(PACKAGE_SOUR
 install: $(VENV)/.package ## The environment with the package in it: .venv/bin/strainwave
 
 .PHONY: lock
-lock: ## Make requirements.lock anew from requirements.in (UPGRADE=1: with the newest versions)
+lock: ## Make both lock files anew from requirements*.in (UPGRADE=1: with the newest versions)
 	$(PYTHON) -m venv build/lock
 	build/lock/bin/python -m pip install --quiet --disable-pip-version-check uv
 	build/lock/bin/uv pip compile --quiet --python-version 3.11 \
 	    --python-platform x86_64-unknown-linux-gnu --only-binary :all: --generate-hashes \
 	    --no-header --no-annotate --no-emit-index-url --no-emit-find-links \
 	    $(if $(UPGRADE),--upgrade) --output-file requirements.lock requirements.in
+	build/lock/bin/uv pip compile --quiet --python-version 3.11 \
+	    --python-platform x86_64-unknown-linux-gnu --only-binary :all: --generate-hashes \
+	    --no-header --no-annotate --no-emit-index-url --no-emit-find-links \
+	    $(if $(UPGRADE),--upgrade) --output-file requirements-bench.lock requirements-bench.in
 
 # ---- what a person does -------------------------------------------------------------------------
 
@@ -85,6 +89,19 @@ bench-accuracy: $(VENV)/.package ## All methods on simulated joints and real rec
 .PHONY: bench-faults
 bench-faults: $(VENV)/.package ## Gauges that fail, one after the other: found, when, what is left
 	$(BIN)/python -m benchmarks.faults --out benchmarks/results
+
+.PHONY: bench
+bench: bench-peers ## Speed beside peers and this machine's limit: tables and curves, 20 minutes
+	$(WITH_VENV) $(BIN)/python -m benchmarks.speed
+
+.PHONY: bench-quick
+bench-quick: bench-peers ## The same in 3 minutes, in build/bench/quick; the record stays as it is
+	$(WITH_VENV) $(BIN)/python -m benchmarks.speed --quick --out build/bench/quick
+
+# What cannot be installed is said, and the bench goes on without it.
+.PHONY: bench-peers
+bench-peers: $(VENV)/.package
+	@tools/ensure_debian.sh $(PYTHON) bench || echo "The bench goes on without these."
 
 .PHONY: arduino-library
 arduino-library: ## The core as an Arduino library, in build/arduino/strainwave

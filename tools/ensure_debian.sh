@@ -4,6 +4,7 @@
 #   tools/ensure_debian.sh PYTHON build   what it takes to make the environment and compile
 #   tools/ensure_debian.sh PYTHON test    and, besides, what the C++ tests link to
 #   tools/ensure_debian.sh PYTHON firmware  and, besides, a cross compiler for Cortex-M and qemu
+#   tools/ensure_debian.sh PYTHON bench  and, besides, peers of the speed bench: Eigen, and Rust's cargo
 #
 # A need is looked for by what it does, not by its package's name, so that a compiler or a Python
 # from elsewhere is as good as Debian's.
@@ -40,6 +41,11 @@ if [[ $purpose == firmware ]]; then
         missing+=(gcc-arm-none-eabi libnewlib-arm-none-eabi libstdc++-arm-none-eabi-newlib)
     fi
     command -v qemu-system-arm >/dev/null || missing+=(qemu-system-arm)
+fi
+if [[ $purpose == bench ]]; then
+    echo '#include <Eigen/Dense>' |
+        "${CXX:-g++}" -E -x c++ -I/usr/include/eigen3 - >/dev/null 2>&1 || missing+=(libeigen3-dev)
+    command -v cargo >/dev/null || missing+=(cargo)
 fi
 
 if ((${#missing[@]} == 0)); then

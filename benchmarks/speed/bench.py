@@ -102,6 +102,7 @@ def run_bench(programs: Programs, extent: Extent, say: Callable[[str], None]) ->
         setting = Setting(
             programs,
             inputs,
+            recording.samples,
             references(recording, _AGREEMENT_SAMPLES),
             limits,
             level,

@@ -33,6 +33,8 @@ class Setting:
         What there is.
     inputs : Path
         The recording, written.
+    samples : int
+        Its length.
     references : mapping
         Ripple of the dense references by filter.
     limits : mapping
@@ -47,6 +49,7 @@ class Setting:
 
     programs: Programs
     inputs: Path
+    samples: int
     references: Mapping[str, Array]
     limits: Mapping[str, Any]
     level: str
@@ -100,10 +103,12 @@ def _time(
     workers: dict[Implementation, Worker], setting: Setting
 ) -> dict[Implementation, list[float]]:
     # Single channels and batches differ in the length of a run only.
-    found: dict[str, list[float]] = {}
     by_key = {each.key: worker for each, worker in workers.items()}
     batch = {each.key for each in workers if each.channels == BATCH_CHANNELS}
-    most = {key: _BATCH_SAMPLES if key in batch else _SINGLE_SAMPLES for key in by_key}
+    most = {
+        key: min(setting.samples, _BATCH_SAMPLES if key in batch else _SINGLE_SAMPLES)
+        for key in by_key
+    }
     found = timed(by_key, most, setting.effort, setting.say)
     return {each: found[each.key] for each in workers}
 

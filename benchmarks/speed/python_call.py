@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import json
+import os
 import sys
 import time
 from collections.abc import Callable
 from typing import Final
 
 import strainwave
+from benchmarks.speed.worker_process import pinned
 from strainwave import _core
 from strainwave.filter import oscillator_preset
 
@@ -32,6 +34,7 @@ def main() -> int:
     int
         0.
     """
+    os.sched_setaffinity(0, pinned(1))
     step = strainwave.OscillatorFilter(oscillator_preset("taghirad1999"), dtype="float32").step
     empty = _core._EmptyStep().step  # noqa: SLF001
     found: dict[str, list[float]] = {"step": [], "empty": []}

@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Many channels at once: the recording begun at another sample for each of them.
-#include <array>
 #include <memory>
-#include <stdexcept>
-#include <string_view>
-#include <utility>
 
+#include "batch_options.hpp"
 #include "cases.hpp"
 #include "filters.hpp"
 #include "long_signals.hpp"
@@ -14,28 +11,6 @@
 namespace speed {
 
 namespace {
-
-constexpr std::array<std::pair<std::string_view, strainwave::VectorLevel>, 4> levels = {{
-    {"portable", strainwave::VectorLevel::portable},
-    {"v2", strainwave::VectorLevel::x86_64_v2},
-    {"v3", strainwave::VectorLevel::x86_64_v3},
-    {"v4", strainwave::VectorLevel::x86_64_v4},
-}};
-
-strainwave::BatchOptions batch_options(const Options& options) {
-  strainwave::BatchOptions batch;
-  batch.thread_count = number(options, "threads", 1);
-  if (const auto level = options.find("level"); level != options.end()) {
-    for (const auto& [name, value] : levels) {
-      if (name == level->second) {
-        batch.level = value;
-        return batch;
-      }
-    }
-    throw std::invalid_argument("level");
-  }
-  return batch;
-}
 
 /// Signals of all channels, each with its own arrays as logs have them.
 struct Signals {

@@ -13,5 +13,6 @@ void add_published_eigen(Cases& cases);
 void add_default_eigen(Cases& cases);
 void add_sequential(Cases& cases);
 void add_batch(Cases& cases);
+void add_long(Cases& cases);
 
 }  // namespace speed

@@ -7,6 +7,7 @@ namespace speed {
 Cases all_cases() {
   Cases cases;
   add_batch(cases);
+  add_long(cases);
   return cases;
 }
 

@@ -9,8 +9,10 @@ Cases all_cases() {
   add_core(cases);
   add_states(cases);
   add_sequential(cases);
+#ifdef SPEED_HAS_EIGEN
   add_published_eigen(cases);
   add_default_eigen(cases);
+#endif
   return cases;
 }
 
