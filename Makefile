@@ -15,7 +15,7 @@ HOST := build/host
 # cmake, ninja and the linters are those of the environment, whatever else the machine has.
 WITH_VENV := PATH="$(CURDIR)/$(BIN):$$PATH"
 
-CXX_FILES = $(shell find include bindings firmware tests -name '*.hpp' -o -name '*.cpp')
+CXX_FILES = $(shell find include bindings firmware tests benchmarks -name '*.hpp' -o -name '*.cpp')
 HEADING = @printf '\n== %s ==\n'
 
 .PHONY: help

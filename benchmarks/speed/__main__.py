@@ -18,7 +18,7 @@ for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
 
 ROOT = Path(__file__).resolve().parents[2]
 RESULTS = ROOT / "benchmarks" / "results"
-IMAGES = ROOT / "docs" / "images"
+DOCS = ROOT / "docs"
 EXAMPLE = """example: python -m benchmarks.speed --quick --out /tmp/speed
   measures for some minutes less and leaves the results on record alone"""
 
@@ -36,7 +36,7 @@ def main() -> int:
     from benchmarks.speed.bench import FULL, QUICK, run_bench  # noqa: PLC0415
     from benchmarks.speed.figures import FIGURES  # noqa: PLC0415
     from benchmarks.speed.programs import prepare  # noqa: PLC0415
-    from benchmarks.speed.table import markdown_of  # noqa: PLC0415
+    from benchmarks.speed.table import markdown_of, with_tables  # noqa: PLC0415
 
     parser = argparse.ArgumentParser(
         prog="python -m benchmarks.speed",
@@ -44,9 +44,11 @@ def main() -> int:
         epilog=EXAMPLE,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument("--quick", action="store_true", help="few rounds, short logs, no curves")
+    parser.add_argument(
+        "--quick", action="store_true", help="few rounds, short logs; no curves, docs left alone"
+    )
     parser.add_argument("--out", type=Path, default=RESULTS, help="folder for results")
-    parser.add_argument("--images", type=Path, default=IMAGES, help="folder for curves")
+    parser.add_argument("--docs", type=Path, default=DOCS, help="documentation to bring up to date")
     parser.add_argument("--json", action="store_true", help="print the results as JSON")
     options = parser.parse_args()
     started_s = time.monotonic()
@@ -65,11 +67,12 @@ def main() -> int:
     sys.stdout.write(as_json if options.json else text)
     options.out.mkdir(parents=True, exist_ok=True)
     (options.out / "latest.json").write_text(as_json, encoding="utf-8")
-    (options.out / "speed.md").write_text(text, encoding="utf-8")
     if results["scaling"] is not None:
-        options.images.mkdir(parents=True, exist_ok=True)
         for name, draw in FIGURES.items():
-            (options.images / name).write_text(draw(results), encoding="utf-8")
+            (options.docs / "images" / name).write_text(draw(results), encoding="utf-8")
+        page = options.docs / "reference" / "bench.md"
+        before = page.read_text(encoding="utf-8")
+        page.write_text(with_tables(before, text), encoding="utf-8")
     say(f"{options.out} written")
     return 0
 

@@ -159,13 +159,11 @@ def _share_of(rows: list[dict[str, Any]], name: str) -> _Value:
 
 def _values_of_comparisons(setting: Setting, found: dict[str, Any]) -> dict[str, _Value]:
     levels = [lv for lv in ("v2", "v3", "v4") if lv in setting.limits["operations_per_s"]]
-    threads = min(2, len(setting.limits["bandwidth_bytes_per_s"]))
     found["implementations"] = []
     values: dict[str, _Value] = {}
     for which, singles in (("published", PUBLISHED), ("default", DEFAULT)):
         batches = [batch(which, level) for level in levels]
-        if threads > 1:
-            batches.append(batch(which, levels[-1], threads))
+        batches += [batch(which, levels[-1], threads) for threads in setting.threads[1:]]
         rows, times = compare((*singles, *batches), setting)
         found["implementations"] += rows
         best = f"batch_{levels[-1]}"
@@ -186,11 +184,13 @@ def _values_of_comparisons(setting: Setting, found: dict[str, Any]) -> dict[str,
 def _values_of_long_logs(
     setting: Setting, extent: Extent, found: dict[str, Any]
 ) -> dict[str, _Value]:
+    lengths = {"published": extent.log_samples, "default": extent.default_log_samples}
     found["long_logs"] = [
-        long_log.measure("published", extent.log_samples, (2,), extent.log_rounds, setting),
-        long_log.measure("default", extent.default_log_samples, (2,), extent.log_rounds, setting),
+        long_log.measure(which, samples, setting.threads, extent.log_rounds, setting)
+        for which, samples in lengths.items()
     ]
-    published, default = (each["ways"]["2_threads"] for each in found["long_logs"])
+    none = {"not_available": "there is one core"}
+    published, default = (each["ways"].get("2_threads", none) for each in found["long_logs"])
     values: dict[str, _Value] = {
         "long_log_vs_sequential": (
             published.get("ratio"),
@@ -206,7 +206,7 @@ def _values_of_long_logs(
         ),
     }
     share = None
-    if "ns_per_sample" in published and "2" in setting.limits["bandwidth_bytes_per_s"]:
+    if "ns_per_sample" in published:
         share = copy_ns(2, setting.limits) / published["ns_per_sample"]
     values["long_log_share_of_bandwidth"] = (share, published.get("not_available", ""))
     return values
@@ -261,31 +261,14 @@ def _values_of_command(
 def _curves(
     setting: Setting, extent: Extent, long_logs: list[dict[str, Any]]
 ) -> dict[str, list[dict[str, Any]]]:
-    cores = range(1, min(2, setting_cores(setting)) + 1)
     lengths = [10**power for power in range(4, 9) if 10**power < extent.log_samples]
     logs = [
-        long_log.measure("published", samples, cores, extent.log_rounds, setting)
+        long_log.measure("published", samples, setting.threads, extent.log_rounds, setting)
         for samples in lengths
     ]
     logs.append(long_logs[0])
     return {
-        "channels": scaling.by_channels(setting, cores),
+        "channels": scaling.by_channels(setting),
         "log_length": logs,
         "states": scaling.by_states(setting),
     }
-
-
-def setting_cores(setting: Setting) -> int:
-    """Return for how many threads the machine's limits were measured.
-
-    Parameters
-    ----------
-    setting : Setting
-        With the limits.
-
-    Returns
-    -------
-    int
-        1 or 2.
-    """
-    return len(setting.limits["bandwidth_bytes_per_s"])

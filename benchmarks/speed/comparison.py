@@ -56,6 +56,11 @@ class Setting:
     effort: Effort
     say: Callable[[str], None]
 
+    @property
+    def threads(self) -> list[int]:
+        """Numbers of threads that are compared: one, and two where there are two cores."""
+        return sorted(int(each) for each in self.limits["bandwidth_bytes_per_s"])
+
 
 def _row(each: Implementation) -> dict[str, Any]:
     return {

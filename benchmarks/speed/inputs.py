@@ -44,7 +44,7 @@ class Recording:
     @property
     def time_s(self) -> Array:
         """Time of each sample."""
-        return SAMPLE_PERIOD_S * np.arange(self.samples)
+        return SAMPLE_PERIOD_S * np.arange(self.samples, dtype=np.float64)
 
     def write(self, folder: Path) -> None:
         """Write the signals as files of doubles, as the programs in C++ and Rust read them.

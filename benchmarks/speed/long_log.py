@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -47,7 +48,11 @@ def measure(
             setting.say(
                 f"log of {samples:.0e} samples, {which}, {name}, round {number + 1} of {rounds}"
             )
-            command = [setting.programs.cpp / f"strainwave_{program}", case, setting.inputs]
+            command: list[str | Path] = [
+                setting.programs.cpp / f"strainwave_{program}",
+                case,
+                setting.inputs,
+            ]
             try:
                 # One at a time: two logs would not fit into the memory that is allowed.
                 with Worker(command, cores) as worker:

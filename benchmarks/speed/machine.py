@@ -66,8 +66,8 @@ def description() -> dict[str, Any]:
         Processor, caches, cores, memory, compiler, Python.
     """
     info = _cpu_info()
-    compiler = subprocess.run(
-        [os.environ.get("CXX", "c++"), "--version"],  # noqa: S603
+    compiler = subprocess.run(  # noqa: S603
+        [os.environ.get("CXX", "c++"), "--version"],
         capture_output=True,
         text=True,
         check=False,

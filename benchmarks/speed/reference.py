@@ -19,9 +19,10 @@ MEASUREMENT_NOISE_NM2: Final = 1.0
 INITIAL_VARIANCE_NM2: Final = 1e3
 
 #: The default filter with 15 states: load and speed terms for orders 2 and 4.
-DEFAULT_TERMS: Final = tuple(
-    (order, kind) for order in (2.0, 4.0) for kind in ("constant", "load", "speed")
-) + ((1.0 / RATIO, "constant"),)
+DEFAULT_TERMS: Final = (
+    *((order, kind) for order in (2.0, 4.0) for kind in ("constant", "load", "speed")),
+    (1.0 / RATIO, "constant"),
+)
 DEFAULT_SETTINGS: Final = ReferenceSettings(
     DEFAULT_TERMS,
     memory_turns=10.0,

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from typing import Any, Final
 
 import numpy as np
@@ -34,15 +33,13 @@ def _median_ns(setting: Setting, program: str, case: str, samples: int, cores: i
     return float(np.median(times))
 
 
-def by_channels(setting: Setting, cores: Iterable[int]) -> list[dict[str, Any]]:
+def by_channels(setting: Setting) -> list[dict[str, Any]]:
     """Time the published filter on 1 to 4096 channels.
 
     Parameters
     ----------
     setting : Setting
         What it takes.
-    cores : iterable of int
-        Numbers of threads.
 
     Returns
     -------
@@ -50,7 +47,7 @@ def by_channels(setting: Setting, cores: Iterable[int]) -> list[dict[str, Any]]:
         ``channels``, ``threads`` and ``ns_per_sample``, by channel-sample.
     """
     found = []
-    for threads in cores:
+    for threads in setting.threads:
         for channels in CHANNELS:
             setting.say(f"{channels} channels, {threads} threads")
             case = f"batch_published:channels={channels}:level={setting.level}:threads={threads}"

@@ -3,9 +3,33 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, Final
 
 from benchmarks.speed.bounds import flops_ns
+
+#: Between these the documentation holds the tables.
+BEGIN: Final = "<!-- tables of benchmarks/results/latest.json -->"
+END: Final = "<!-- end of tables -->"
+
+
+def with_tables(page: str, tables: str) -> str:
+    """Put tables into a page.
+
+    Parameters
+    ----------
+    page : str
+        Markdown with the marks `BEGIN` and `END`.
+    tables : str
+        From `markdown_of`.
+
+    Returns
+    -------
+    str
+        The page with these tables in place of the ones it had.
+    """
+    head, _, rest = page.partition(BEGIN)
+    _, _, tail = rest.partition(END)
+    return f"{head}{BEGIN}\n{tables}{END}{tail}"
 
 
 def number(value: float | None, digits: int = 3) -> str:
@@ -26,8 +50,7 @@ def number(value: float | None, digits: int = 3) -> str:
     if value is None:
         return "-"
     if value == 0 or 1e-3 <= abs(value) < 1e6:
-        text = f"{float(f'{value:.{digits}g}'):,.10f}".rstrip("0").rstrip(".")
-        return text
+        return f"{float(f'{value:.{digits}g}'):,.10f}".rstrip("0").rstrip(".")
     return f"{value:.{digits}g}"
 
 

@@ -18,7 +18,10 @@ from benchmarks.speed.worker_process import NotAvailableError
 from strainwave.filter import oscillator_preset
 
 SAMPLES = 4000
-LIMITS = {"operations_per_s": {"v3": {"float": 1e11, "double": 5e10}}}
+LIMITS = {
+    "operations_per_s": {"v3": {"float": 1e11, "double": 5e10}},
+    "bandwidth_bytes_per_s": {"1": {"copy": 1e10, "triad": 1e10}},
+}
 #: What a peer in Python needs, where it is not its name.
 MODULES = {"numba_fastmath": "numba"}
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The default ripple filter's equations with 15 states in Eigen's matrices of fixed size.  Checks of
-// the sample, gaps, delays and frozen terms are left out, in this peer's favour.
+// The default ripple filter's equations with 15 states in Eigen's matrices of fixed size.  Checks
+// of the sample, gaps, delays and frozen terms are left out, in this peer's favour.
 #include <Eigen/Dense>
 #include <algorithm>
 #include <array>
@@ -70,7 +70,8 @@ class DenseRipple {
     for (int a = 0; a < 3; ++a) {
       const double turns =
           orders[static_cast<std::size_t>(a)] * motor_angle_rad / (2 * std::numbers::pi);
-      const Real angle = static_cast<Real>((turns - std::floor(turns + 0.5)) * 2 * std::numbers::pi);
+      const Real angle =
+          static_cast<Real>((turns - std::floor(turns + 0.5)) * 2 * std::numbers::pi);
       waves.col(a) << std::cos(angle), std::sin(angle);
     }
     return waves;
@@ -149,8 +150,8 @@ class DenseRipple {
 
   void track_scale(Real innovation_Nm, Real rotation_rad) {
     const Real beyond = std::abs(innovation_Nm) > scale_Nm_ ? Real(1) : Real(0);
-    scale_Nm_ *= std::exp(Real(0.06) * std::min(std::abs(rotation_rad), Real(3)) *
-                          (beyond - Real(0.3)));
+    scale_Nm_ *=
+        std::exp(Real(0.06) * std::min(std::abs(rotation_rad), Real(3)) * (beyond - Real(0.3)));
     scale_Nm_ = std::max(scale_Nm_, Real(0.02));
   }
 
@@ -170,15 +171,14 @@ class DenseRipple {
 
 template <class Real>
 Case dense(const Recording& recording, const Options& /*options*/) {
-  return single_channel(
-      std::vector<Real>(recording.samples()),
-      [torque = converted<Real>(recording.torque_Nm), angle = recording.motor_angle_rad](
-          std::size_t samples, Real* ripple_Nm) {
-        DenseRipple<Real> filter;
-        for (std::size_t k = 0; k < samples; ++k) {
-          ripple_Nm[k] = filter.step(torque[k], angle[k]);
-        }
-      });
+  return single_channel(std::vector<Real>(recording.samples()),
+                        [torque = converted<Real>(recording.torque_Nm),
+                         angle = recording.motor_angle_rad](std::size_t samples, Real* ripple_Nm) {
+                          DenseRipple<Real> filter;
+                          for (std::size_t k = 0; k < samples; ++k) {
+                            ripple_Nm[k] = filter.step(torque[k], angle[k]);
+                          }
+                        });
 }
 
 }  // namespace

@@ -31,8 +31,7 @@ template <class Real>
   return config;
 }
 template <class Real>
-inline constexpr strainwave::RippleFilterConfig<Real, 7> default_15 =
-    default_configuration<Real>();
+inline constexpr strainwave::RippleFilterConfig<Real, 7> default_15 = default_configuration<Real>();
 
 /// Angles as an encoder delivers them.
 inline std::vector<strainwave::Phase> phases(const Recording& recording) {
@@ -85,12 +84,12 @@ Case published_case(const Recording& recording, const ConfigOf& config_of) {
 /// A case of one channel with the default filter.
 template <class Real, class ConfigOf>
 Case default_case(const Recording& recording, const ConfigOf& config_of) {
-  return single_channel(
-      std::vector<Real>(recording.samples()),
-      [config_of, torque = converted<Real>(recording.torque_Nm), angle = phases(recording)](
-          std::size_t samples, Real* ripple_Nm) {
-        filter_default(config_of(), torque.data(), angle.data(), samples, ripple_Nm);
-      });
+  return single_channel(std::vector<Real>(recording.samples()),
+                        [config_of, torque = converted<Real>(recording.torque_Nm),
+                         angle = phases(recording)](std::size_t samples, Real* ripple_Nm) {
+                          filter_default(config_of(), torque.data(), angle.data(), samples,
+                                         ripple_Nm);
+                        });
 }
 
 }  // namespace speed

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// strainwave_limits SECONDS BYTES: what this machine can do, as one object of JSON. Products and sums
-// a second at each vector level and precision; bytes a second copied and in a triad, by threads.
+// strainwave_limits SECONDS BYTES: what this machine can do, as one object of JSON. Products and
+// sums a second at each vector level and precision; bytes a second copied and in a triad, by
+// threads.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>

@@ -43,7 +43,8 @@ std::string compared_with_sequence(Log& log) {
   double squares_Nm2 = 0.0;
   double largest_Nm = 0.0;
   for (std::size_t k = 0; k < sequence_Nm.size(); ++k) {
-    const double apart_Nm = static_cast<double>(log.ripple_Nm[k]) - static_cast<double>(sequence_Nm[k]);
+    const double apart_Nm =
+        static_cast<double>(log.ripple_Nm[k]) - static_cast<double>(sequence_Nm[k]);
     squares_Nm2 += apart_Nm * apart_Nm;
     largest_Nm = std::max(largest_Nm, std::abs(apart_Nm));
   }

@@ -68,7 +68,8 @@ int main(int argc, char** argv) {
   std::string name = argc == 3 ? argv[1] : "";
   const speed::Options options = options_of(name);
   if (!cases.contains(name)) {
-    std::fprintf(stderr, "usage: CASE[:OPTION=VALUE...] INPUTS, or --list\nthere is no case \"%s\"\n",
+    std::fprintf(stderr,
+                 "usage: CASE[:OPTION=VALUE...] INPUTS, or --list\nthere is no case \"%s\"\n",
                  name.c_str());
     return 2;
   }

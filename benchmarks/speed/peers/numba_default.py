@@ -36,9 +36,7 @@ _LEAST_SCALE: Final = _float(0.5 * 0.04)
 
 
 @numba.njit(fastmath=numba_options.fastmath)  # type: ignore[untyped-decorator]
-def _regressors(
-    angle_rad: float, load: np.float32, speed: np.float32, waves: Any, h: Any
-) -> None:
+def _regressors(angle_rad: float, load: np.float32, speed: np.float32, waves: Any, h: Any) -> None:
     for a in range(3):
         turns = _ORDERS[a] * angle_rad / (2 * math.pi)
         rest = _float((turns - math.floor(turns + 0.5)) * (2 * math.pi))
