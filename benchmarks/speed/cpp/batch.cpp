@@ -23,7 +23,7 @@ Case batch_published(const Recording& recording, const Options& options) {
   using Config = strainwave::OscillatorFilterConfig<float, 3>;
   using State = strainwave::OscillatorFilterState<float, 3>;
   const std::size_t channels = number(options, "channels", 64);
-  auto signals = std::make_shared<Signals>();
+  const auto signals = std::make_shared<Signals>();
   Case each;
   each.prepare = [signals, recording, channels](std::size_t samples) {
     signals->torque_Nm.resize(channels);

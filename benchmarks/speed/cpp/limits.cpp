@@ -4,11 +4,10 @@
 // threads.
 #include <algorithm>
 #include <chrono>
-#include <cstdio>
-#include <cstdlib>
 #include <cstring>
+#include <exception>
 #include <functional>
-#include <memory>
+#include <iostream>
 #include <string>
 #include <thread>
 #include <vector>
@@ -87,21 +86,25 @@ Bandwidth bandwidth(std::size_t threads, double seconds, std::size_t bytes) {
 
 void print_level(int level, const speed::Rate& in_float, const speed::Rate& in_double,
                  double seconds) {
-  std::printf("%s\"v%d\": {\"lanes_float\": %d, \"float\": %.6g, \"double\": %.6g}",
-              level == 2 ? "" : ", ", level, in_float.lanes, operations_a_second(in_float, seconds),
-              operations_a_second(in_double, seconds));
+  std::cout << (level == 2 ? "" : ", ") << "\"v" << level << R"(": {"lanes_float": )"
+            << in_float.lanes << R"(, "float": )" << operations_a_second(in_float, seconds)
+            << R"(, "double": )" << operations_a_second(in_double, seconds) << "}";
 }
 
-}  // namespace
+void print_bandwidth(std::size_t threads, double seconds, std::size_t bytes) {
+  const Bandwidth found = bandwidth(threads, seconds, bytes);
+  std::cout << (threads == 1 ? "" : ", ") << '"' << threads << R"(": {"copy": )" << found.copy
+            << R"(, "triad": )" << found.triad << "}";
+}
 
-int main(int argc, char** argv) {
-  if (argc != 3) {
-    std::fputs("usage: strainwave_limits SECONDS BYTES\n", stderr);
+int run(const std::vector<std::string>& arguments) {
+  if (arguments.size() != 3) {
+    std::cerr << "usage: strainwave_limits SECONDS BYTES\n";
     return 2;
   }
-  const double seconds = std::atof(argv[1]);
-  const auto bytes = static_cast<std::size_t>(std::atof(argv[2]));
-  std::printf("{\"operations_per_s\": {");
+  const double seconds = std::stod(arguments[1]);
+  const auto bytes = static_cast<std::size_t>(std::stod(arguments[2]));
+  std::cout << R"({"operations_per_s": {)";
   print_level(2, speed::v2::rate_of_float(), speed::v2::rate_of_double(), seconds);
   if (__builtin_cpu_supports("x86-64-v3")) {
     print_level(3, speed::v3::rate_of_float(), speed::v3::rate_of_double(), seconds);
@@ -109,13 +112,22 @@ int main(int argc, char** argv) {
   if (__builtin_cpu_supports("x86-64-v4")) {
     print_level(4, speed::v4::rate_of_float(), speed::v4::rate_of_double(), seconds);
   }
-  std::printf("}, \"bandwidth_bytes_per_s\": {");
+  std::cout << R"(}, "bandwidth_bytes_per_s": {)";
   const std::size_t most = std::min<std::size_t>(2, std::thread::hardware_concurrency());
   for (std::size_t threads = 1; threads <= most; ++threads) {
-    const Bandwidth found = bandwidth(threads, seconds, bytes);
-    std::printf("%s\"%zu\": {\"copy\": %.6g, \"triad\": %.6g}", threads == 1 ? "" : ", ", threads,
-                found.copy, found.triad);
+    print_bandwidth(threads, seconds, bytes);
   }
-  std::printf("}}\n");
+  std::cout << "}}\n";
   return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run({argv, argv + argc});
+  } catch (const std::exception& error) {
+    std::cerr << error.what() << '\n';
+    return 1;
+  }
 }

@@ -2,8 +2,8 @@
 // One long log in chunks of time on lanes and threads.
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <memory>
+#include <sstream>
 #include <string>
 
 #include "batch_options.hpp"
@@ -48,17 +48,17 @@ std::string compared_with_sequence(Log& log) {
     squares_Nm2 += apart_Nm * apart_Nm;
     largest_Nm = std::max(largest_Nm, std::abs(apart_Nm));
   }
-  char text[256];
-  std::snprintf(text, sizeof(text),
-                ", \"difference_rms_Nm\": %.6g, \"difference_largest_Nm\": %.6g, \"chunks\": %zu, "
-                "\"repeated_chunks\": %zu, \"warm_up_samples\": %zu",
-                std::sqrt(squares_Nm2 / static_cast<double>(sequence_Nm.size())), largest_Nm,
-                report.chunk_count, report.repeated_chunks, report.warm_up_samples);
-  return text;
+  std::ostringstream text;
+  text << R"(, "difference_rms_Nm": )"
+       << std::sqrt(squares_Nm2 / static_cast<double>(sequence_Nm.size()))
+       << R"(, "difference_largest_Nm": )" << largest_Nm << R"(, "chunks": )" << report.chunk_count
+       << R"(, "repeated_chunks": )" << report.repeated_chunks << R"(, "warm_up_samples": )"
+       << report.warm_up_samples;
+  return text.str();
 }
 
 Case long_published(const Recording& recording, const Options& options) {
-  auto log = std::make_shared<Log>();
+  const auto log = std::make_shared<Log>();
   strainwave::LongOptions how;
   how.batch = batch_options(options);
   Case each;

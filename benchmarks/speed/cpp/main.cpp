@@ -2,11 +2,12 @@
 // PROGRAM CASE[:OPTION=VALUE...] INPUTS: one case, told what to do by lines, answers in lines of
 // JSON. PROGRAM --list: the cases there are.
 #include <chrono>
-#include <cstdio>
+#include <exception>
 #include <fstream>
 #include <iostream>
 #include <sstream>
 #include <string>
+#include <vector>
 
 #include "case.hpp"
 
@@ -28,8 +29,8 @@ void time(const speed::Case& timed, std::size_t samples, double least_s) {
     ++runs;
     taken_s = now_s() - began_s;
   }
-  std::printf("{\"ns_per_sample\": %.6g, \"runs\": %d%s}\n",
-              1e9 * taken_s / static_cast<double>(done), runs, timed.remarks().c_str());
+  std::cout << R"({"ns_per_sample": )" << 1e9 * taken_s / static_cast<double>(done)
+            << R"(, "runs": )" << runs << timed.remarks() << "}\n";
 }
 
 /// write SAMPLES FILE: the ripple as doubles.
@@ -38,9 +39,10 @@ void write(const speed::Case& timed, std::size_t samples, const std::string& pat
   timed.run(samples);
   const auto ripple_Nm = timed.ripple_Nm();
   std::ofstream(path, std::ios::binary)
+      // NOLINTNEXTLINE(cppcoreguidelines-pro-type-reinterpret-cast): doubles as bytes
       .write(reinterpret_cast<const char*>(ripple_Nm.data()),
              static_cast<std::streamsize>(ripple_Nm.size() * sizeof(double)));
-  std::printf("{\"samples\": %zu}\n", ripple_Nm.size());
+  std::cout << R"({"samples": )" << ripple_Nm.size() << "}\n";
 }
 
 /// Takes the options off a case's name.
@@ -55,27 +57,23 @@ speed::Options options_of(std::string& name) {
   return options;
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+int run(const std::vector<std::string>& arguments) {
   const speed::Cases cases = speed::all_cases();
-  if (argc == 2 && std::string(argv[1]) == "--list") {
+  if (arguments.size() == 2 && arguments[1] == "--list") {
     for (const auto& each : cases) {
-      std::puts(each.first.c_str());
+      std::cout << each.first << '\n';
     }
     return 0;
   }
-  std::string name = argc == 3 ? argv[1] : "";
+  std::string name = arguments.size() == 3 ? arguments[1] : "";
   const speed::Options options = options_of(name);
   if (!cases.contains(name)) {
-    std::fprintf(stderr,
-                 "usage: CASE[:OPTION=VALUE...] INPUTS, or --list\nthere is no case \"%s\"\n",
-                 name.c_str());
+    std::cerr << "usage: CASE[:OPTION=VALUE...] INPUTS, or --list\n"
+              << "there is no case \"" << name << "\"\n";
     return 2;
   }
-  const speed::Case timed = cases.at(name)(speed::read_recording(argv[2]), options);
-  std::printf("{\"version\": \"%s\"}\n", SPEED_VERSION);
-  std::fflush(stdout);
+  const speed::Case timed = cases.at(name)(speed::read_recording(arguments[2]), options);
+  std::cout << R"({"version": ")" << SPEED_VERSION << "\"}" << std::endl;
   for (std::string line; std::getline(std::cin, line);) {
     std::istringstream words(line);
     std::string what;
@@ -87,7 +85,18 @@ int main(int argc, char** argv) {
     } else {
       write(timed, samples, argument);
     }
-    std::fflush(stdout);
+    std::cout.flush();
   }
   return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run({argv, argv + argc});
+  } catch (const std::exception& error) {
+    std::cerr << error.what() << '\n';
+    return 1;
+  }
 }

@@ -13,7 +13,7 @@ constexpr int chains = 12;
 
 template <class Real>
 double run(long rounds) {
-  typedef Real Vector __attribute__((vector_size(vector_bytes)));
+  using Vector [[gnu::vector_size(vector_bytes)]] = Real;
   volatile Real factor_now = Real(0.999);
   volatile Real summand_now = Real(1e-3);
   const Vector factor = Vector{} + factor_now;

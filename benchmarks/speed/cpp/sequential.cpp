@@ -22,7 +22,7 @@ std::vector<double> in_double(const std::vector<float>& values) {
 }
 
 Case sequential_published(const Recording& recording, const Options& /*options*/) {
-  auto log = std::make_shared<Log>();
+  const auto log = std::make_shared<Log>();
   Case each;
   each.prepare = [log, recording](std::size_t samples) {
     repeat(recording.torque_Nm, samples, log->torque_Nm);
@@ -39,7 +39,7 @@ Case sequential_published(const Recording& recording, const Options& /*options*/
 }
 
 Case sequential_default(const Recording& recording, const Options& /*options*/) {
-  auto log = std::make_shared<Log>();
+  const auto log = std::make_shared<Log>();
   Case each;
   each.prepare = [log, recording](std::size_t samples) {
     repeat(recording.torque_Nm, samples, log->torque_Nm);
