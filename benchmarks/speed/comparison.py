@@ -11,7 +11,7 @@ from typing import Any, Final
 import numpy as np
 
 from benchmarks.speed.agreement import agreement
-from benchmarks.speed.bounds import flops_ns
+from benchmarks.speed.bounds import FLOPS, flops_ns
 from benchmarks.speed.implementations import BATCH_CHANNELS, Implementation, start
 from benchmarks.speed.inputs import Array
 from benchmarks.speed.programs import Programs
@@ -75,6 +75,8 @@ def _row(each: Implementation) -> dict[str, Any]:
         "ns_per_sample": None,
         "ratio": None,
         "peak_memory_bytes": None,
+        "flops": FLOPS[each.filter],
+        "limit_ns": None,
         "share_of_limit": None,
         "not_available": None,
     }
@@ -159,6 +161,7 @@ def compare(
                 "ns_per_sample": median,
                 "ratio": None if first is None else ratio(found, first),
                 "peak_memory_bytes": workers[each].peak_memory_bytes,
+                "limit_ns": _limit_ns(each, setting),
                 "share_of_limit": _limit_ns(each, setting) / median,
             }
     return list(rows.values()), {each.name: found for each, found in times.items()}

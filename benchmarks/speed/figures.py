@@ -47,7 +47,7 @@ def channels_figure(results: Mapping[str, Any]) -> str:
                 [each["ns_per_sample"] for each in found],
                 marker="o",
                 color=colour,
-                label="one thread" if threads == 1 else f"{threads} threads",
+                label="one thread" if threads == 1 else "two threads",
             )
         eigen = _row(results, "published", "eigen")["ns_per_sample"]
         if eigen is not None:
@@ -79,7 +79,7 @@ def log_figure(results: Mapping[str, Any]) -> str:
     ways = (
         ("sequential", style.GREY, "in sequence"),
         ("1_threads", style.BLUE, "in chunks, one thread"),
-        ("2_threads", style.ORANGE, "in chunks, 2 threads"),
+        ("2_threads", style.ORANGE, "in chunks, two threads"),
     )
     with style.figure_style():
         figure = style.new_figure(HEIGHT_IN, WIDTH_IN)

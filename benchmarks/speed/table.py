@@ -93,21 +93,22 @@ def implementations_table(results: Mapping[str, Any], which: str) -> str:
         Markdown.
     """
     lines = [
-        "| implementation | precision | ns a sample | ratio | peak memory, MB | share of limit "
-        "| difference, Nm rms |",
-        "|---|---|---|---|---|---|---|",
+        "| implementation | precision | ns a sample | ratio | peak memory, MB | limit, ns "
+        "| share of limit | difference, Nm rms |",
+        "|---|---|---|---|---|---|---|---|",
     ]
     for row in results["implementations"]:
         if row["filter"] != which:
             continue
         cells = [row["what"], row["precision"]]
         if row["ns_per_sample"] is None:
-            cells += ["not available", "-", "-", "-"]
+            cells += ["not available", "-", "-", "-", "-"]
         else:
             cells += [
                 number(row["ns_per_sample"]),
                 number(row["ratio"]),
                 f"{row['peak_memory_bytes'] / 1e6:.0f}",
+                number(row["limit_ns"]),
                 f"{100 * row['share_of_limit']:.2g} %",
             ]
         cells.append(number(row["difference_rms_Nm"], 2))
@@ -159,14 +160,15 @@ def markdown_of(results: Mapping[str, Any]) -> str:
         Markdown.
     """
     machine = results["machine"]
+    flops = results["limits"]["flops"]
     return "\n".join(
         [
             f"{machine['processor']}, {machine['cores']} cores, x86-64-{machine['vector_level']}; "
             f"{machine['compiler']}.\n",
             acceptance_table(results),
-            "Published filter, 6 states:\n",
+            f"Published filter, 6 states, {flops['published']} flops an update:\n",
             implementations_table(results, "published"),
-            "Default ripple filter, 15 states:\n",
+            f"Default ripple filter, 15 states, {flops['default']} flops an update:\n",
             implementations_table(results, "default"),
             "What this machine can do at best:\n",
             limits_table(results),

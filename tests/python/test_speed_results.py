@@ -72,6 +72,9 @@ def test_every_implementation_is_timed_or_said_why_not(results):
         assert (row["ns_per_sample"] is None) == (row["not_available"] is not None)
         if row["ns_per_sample"] is not None:
             assert row["difference_rms_Nm"] < 0.05
+            assert row["limit_ns"] / row["ns_per_sample"] == pytest.approx(
+                row["share_of_limit"], rel=1e-4
+            )
             assert 0 < row["share_of_limit"] < 1
             assert row["peak_memory_bytes"] > 1e6
     for log in results["long_logs"]:
@@ -165,6 +168,15 @@ def test_vector_level_follows_from_the_flags(flags, level):
 )
 def test_numbers_are_readable(value, text):
     assert number(value) == text
+
+
+def test_minikalman_says_the_version_that_is_locked():
+    folder = ROOT / "benchmarks" / "speed" / "rust"
+    lock = (folder / "Cargo.lock").read_text(encoding="utf-8")
+    (locked,) = re.findall(r'name = "minikalman"\nversion = "([0-9.]+)"', lock)
+    assert f'"{locked}' in (folder / "src" / "main.rs").read_text(encoding="utf-8").replace(
+        "\\", ""
+    )
 
 
 def test_lock_of_the_peers_has_hashes_and_no_addresses():

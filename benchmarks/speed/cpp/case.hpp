@@ -7,6 +7,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -48,6 +49,9 @@ Case single_channel(std::vector<Real> ripple_Nm, Filter filter) {
   auto ripple = std::make_shared<std::vector<Real>>(std::move(ripple_Nm));
   auto last = std::make_shared<std::size_t>(0);
   return {[ripple, last, filter](std::size_t samples) {
+            if (samples > ripple->size()) {
+              throw std::out_of_range("the recording is shorter than that");
+            }
             filter(samples, ripple->data());
             *last = samples;
             return samples;

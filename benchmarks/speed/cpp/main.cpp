@@ -73,7 +73,7 @@ int run(const std::vector<std::string>& arguments) {
     return 2;
   }
   const speed::Case timed = cases.at(name)(speed::read_recording(arguments[2]), options);
-  std::cout << R"({"version": ")" << SPEED_VERSION << "\"}" << std::endl;
+  std::cout << R"({"version": ")" << SPEED_VERSION << "\"}\n" << std::flush;
   for (std::string line; std::getline(std::cin, line);) {
     std::istringstream words(line);
     std::string what;
