@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Compiled once for each level, with SPEED_LEVEL and its -march.  Level 2 has no fused product and
-// sum: there it is one instruction of each.
+// Compiled once for each level, with SPEED_LEVEL, SPEED_NAMESPACE and its -march.  Level 2 has no
+// fused product and sum: there it is one instruction of each.
 #include "multiply_add.hpp"
 
 namespace speed {
@@ -39,13 +39,11 @@ Rate rate() {
 
 }  // namespace
 
-#define SPEED_NAMESPACE_OF(level) v##level
-#define SPEED_NAMESPACE(level) SPEED_NAMESPACE_OF(level)
-namespace SPEED_NAMESPACE(SPEED_LEVEL) {
+namespace SPEED_NAMESPACE {
 
 Rate rate_of_float() { return rate<float>(); }
 Rate rate_of_double() { return rate<double>(); }
 
-}  // namespace SPEED_NAMESPACE(SPEED_LEVEL)
+}  // namespace SPEED_NAMESPACE
 
 }  // namespace speed
