@@ -11,8 +11,8 @@ from typing import Any, Final
 import numpy as np
 
 from benchmarks.speed.agreement import agreement
-from benchmarks.speed.bounds import FLOPS, flops_ns
-from benchmarks.speed.implementations import BATCH_CHANNELS, Implementation, start
+from benchmarks.speed.bounds import FLOPS
+from benchmarks.speed.implementations import BATCH_CHANNELS, Implementation, issue, start
 from benchmarks.speed.inputs import Array
 from benchmarks.speed.programs import Programs
 from benchmarks.speed.rounds import Effort, ratio, timed
@@ -21,6 +21,8 @@ from benchmarks.speed.worker_process import NotAvailableError, Worker
 #: Samples of one channel in a run, and of each of many channels.
 _SINGLE_SAMPLES: Final = 50_000
 _BATCH_SAMPLES: Final = 20_000
+#: Of products and sums in a run, where these are measured.
+_OPERATIONS: Final = 10_000_000
 
 
 @dataclass(frozen=True)
@@ -101,9 +103,21 @@ def _level_of(each: Implementation, setting: Setting) -> str:
     return next((lv for lv in ("v2", "v3", "v4") if f"level={lv}" in each.case), setting.level)
 
 
-def _limit_ns(each: Implementation, setting: Setting) -> float:
-    level = _level_of(each, setting)
-    return flops_ns(each.filter, level, each.precision, setting.limits) / each.cores
+def _limit_of(each: Implementation, setting: Setting) -> Implementation:
+    return issue(_level_of(each, setting), each.precision)
+
+
+def _limit(
+    each: Implementation, times_ns: list[float], operation_ns: list[float] | None
+) -> dict[str, float]:
+    if operation_ns is None:
+        return {}
+    # At best: its flops at the rate that products and sums have in the same round.
+    at_best_ns = [ns * FLOPS[each.filter] / each.cores for ns in operation_ns]
+    return {
+        "limit_ns": float(np.median(at_best_ns)),
+        "share_of_limit": ratio(at_best_ns, times_ns),
+    }
 
 
 def _time(
@@ -116,6 +130,7 @@ def _time(
         key: min(setting.samples, _BATCH_SAMPLES if key in batch else _SINGLE_SAMPLES)
         for key in by_key
     }
+    most |= {each.key: _OPERATIONS for each in workers if each.filter == "no"}
     found = timed(by_key, most, setting.effort, setting.say)
     return {each: found[each.key] for each in workers}
 
@@ -124,6 +139,8 @@ def compare(
     implementations: Iterable[Implementation], setting: Setting
 ) -> tuple[list[dict[str, Any]], dict[str, list[float]]]:
     """Compare implementations of one filter.
+
+    The limit of each is measured in the same rounds.
 
     Parameters
     ----------
@@ -153,15 +170,20 @@ def compare(
                 row["not_available"] = str(error)
             if row["not_available"]:
                 setting.say(f"{each.what} ({each.filter}): not available, {row['not_available']}")
+        for limit in {_limit_of(each, setting) for each in workers}:
+            try:
+                workers[limit] = start(limit, setting.programs, setting.inputs)
+                stack.callback(workers[limit].close)
+            except NotAvailableError as error:
+                setting.say(f"{limit.what}: not available, {error}")
         times = _time(workers, setting)
         first = times.get(next(iter(rows)))
-        for each, found in times.items():
-            median = float(np.median(found))
-            rows[each] |= {
-                "ns_per_sample": median,
-                "ratio": None if first is None else ratio(found, first),
-                "peak_memory_bytes": workers[each].peak_memory_bytes,
-                "limit_ns": _limit_ns(each, setting),
-                "share_of_limit": _limit_ns(each, setting) / median,
-            }
-    return list(rows.values()), {each.name: found for each, found in times.items()}
+        for each, row in rows.items():
+            if each in times:
+                row.update(
+                    ns_per_sample=float(np.median(times[each])),
+                    ratio=None if first is None else ratio(times[each], first),
+                    peak_memory_bytes=workers[each].peak_memory_bytes,
+                )
+                row.update(_limit(each, times[each], times.get(_limit_of(each, setting))))
+    return list(rows.values()), {each.name: times[each] for each in rows if each in times}

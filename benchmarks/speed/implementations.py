@@ -133,6 +133,26 @@ def batch(which: str, level: str, threads: int = 1) -> Implementation:
     )
 
 
+def issue(level: str, precision: str) -> Implementation:
+    """Return products and sums alone: what an update could take at best.
+
+    Parameters
+    ----------
+    level : str
+        Vector level.
+    precision : str
+        ``float`` or ``double``.
+
+    Returns
+    -------
+    Implementation
+        One whose samples are operations.
+    """
+    case = f"multiply_add:level={level}:double={int(precision == 'double')}"
+    name = f"issue_{level}_{precision}"
+    return Implementation(name, "no", "dispatched", case, precision, f"products and sums, {level}")
+
+
 def start(each: Implementation, programs: Programs, inputs: Path) -> Worker:
     """Start a worker.
 

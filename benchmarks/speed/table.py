@@ -54,6 +54,22 @@ def number(value: float | None, digits: int = 3) -> str:
     return f"{value:.{digits}g}"
 
 
+def percent(share: float | None) -> str:
+    """Write a share.
+
+    Parameters
+    ----------
+    share : float, optional
+        What; None becomes a dash.
+
+    Returns
+    -------
+    str
+        For a table.
+    """
+    return "-" if share is None else f"{100 * share:.2g} %"
+
+
 def acceptance_table(results: Mapping[str, Any]) -> str:
     """Write what was asked for and what was reached.
 
@@ -109,7 +125,7 @@ def implementations_table(results: Mapping[str, Any], which: str) -> str:
                 number(row["ratio"]),
                 f"{row['peak_memory_bytes'] / 1e6:.0f}",
                 number(row["limit_ns"]),
-                f"{100 * row['share_of_limit']:.2g} %",
+                percent(row["share_of_limit"]),
             ]
         cells.append(number(row["difference_rms_Nm"], 2))
         lines.append("| " + " | ".join(cells) + " |")

@@ -129,7 +129,10 @@ def test_comparison_times_who_agrees(inputs, found):
     assert row["ratio"] == 1.0
     assert row["difference_rms_Nm"] < TOLERANCE_NM["published", "double"]
     assert len(times["numpy"]) == 2
-    assert row["share_of_limit"] == pytest.approx(2 * 2.12 / row["ns_per_sample"])
+    if (programs.BUILD / "cpp" / "strainwave_dispatched").exists():
+        assert 1e-6 < row["share_of_limit"] < 1e-2
+    else:
+        assert row["share_of_limit"] is None
 
 
 def test_who_disagrees_is_said_and_not_timed(inputs, found):

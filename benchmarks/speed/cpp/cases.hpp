@@ -14,5 +14,6 @@ void add_default_eigen(Cases& cases);
 void add_sequential(Cases& cases);
 void add_batch(Cases& cases);
 void add_long(Cases& cases);
+void add_issue(Cases& cases);
 
 }  // namespace speed

@@ -8,6 +8,7 @@ Cases all_cases() {
   Cases cases;
   add_batch(cases);
   add_long(cases);
+  add_issue(cases);
   return cases;
 }
 
