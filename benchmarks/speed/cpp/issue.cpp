@@ -30,7 +30,7 @@ Case multiply_add(const Recording& /*recording*/, const Options& options) {
   each.run = [rate](std::size_t operations) {
     const auto rounds =
         static_cast<long>(static_cast<double>(operations) / rate.operations_a_round);
-    volatile double sink = rate.run(rounds + 1);
+    const volatile double sink = rate.run(rounds + 1);
     static_cast<void>(sink);
     return static_cast<std::size_t>(static_cast<double>(rounds + 1) * rate.operations_a_round);
   };
