@@ -67,7 +67,7 @@ class Batch {
   }
 
   void reset() {
-    const auto held = calls_.hold();
+    calls_.wait();
     states_.clear();
     for (const Config& config : configs_) {
       states_.push_back(initial_state(config));
@@ -82,8 +82,7 @@ class Batch {
     require_available(level);
     const std::vector<Channel> channels =
         to_channels(torque_Nm, speed_rad_s, expected_Nm, clean_Nm, ripple_Nm, status);
-    const nb::gil_scoped_release release;
-    const auto held = calls_.hold();
+    const CallLock::Long running(calls_);
     process_batch<Real, most_orders>(configs_, states_, channels,
                                      {.level = level, .thread_count = threads});
   }
@@ -99,13 +98,12 @@ class Batch {
     const std::vector<Channel> channels =
         to_channels({torque_Nm}, {speed_rad_s}, to_rows(expected_Nm), to_rows(clean_Nm),
                     to_rows(ripple_Nm), to_rows(status));
-    const nb::gil_scoped_release release;
-    const auto held = calls_.hold();
+    const CallLock::Long running(calls_);
     return process_long(configs_[0], states_[0], channels[0], options);
   }
 
   [[nodiscard]] std::vector<CountsByName> counters() const {
-    const auto held = calls_.hold();
+    calls_.wait();
     std::vector<CountsByName> counts;
     counts.reserve(states_.size());
     for (const State& state : states_) {
