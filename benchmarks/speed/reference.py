@@ -31,7 +31,7 @@ DEFAULT_SETTINGS: Final = ReferenceSettings(
     load_flattens=True,
     variance_limited=True,
     noise_shared=True,
-    noise_in_turn=True,
+    noise_after=True,
     gaps_bridged=True,
     rest_is_exact=True,
 )

@@ -228,41 +228,44 @@ constexpr void move_frame(RippleCovariance<Real, MaxPairs>& p, Count count, std:
   move_row(p, count, b + 1, terms, steps);
 }
 
-/// Adds process noise of one variance to an order's coefficients, b the first of them, but to no
-/// pair whose variance is beyond the limit: a pair that is hardly seen, as a load pair at constant
-/// load, does not become less known than before anything was learned.  Returns whether one was
-/// beyond.
+/// Share of its process noise that a pair is given, i its first coefficient: all while it is well
+/// known, nothing where it is as little known as before anything was learned, as a load pair at
+/// constant load becomes.  That is how the variance of a coefficient grows that wanders about 0 and
+/// not without end.
+template <class Real, std::size_t MaxPairs>
+[[nodiscard]] constexpr Real share_of_noise(const RippleCovariance<Real, MaxPairs>& p,
+                                            std::size_t i, Real limit_Nm2) {
+  const Real share = Real(1) - (element_of(p, i, i) + element_of(p, i + 1, i + 1)) *
+                                   (Real(0.5) / limit_Nm2);
+  return share > Real(0) ? share : Real(0);
+}
+
+/// Adds process noise of one variance to an order's coefficients, b the first of them.  Returns
+/// whether a pair was given nothing.
 template <class Real, std::size_t MaxPairs>
 constexpr bool add_noise(RippleCovariance<Real, MaxPairs>& p, std::size_t a, std::size_t b,
                          std::size_t terms, Real variance_Nm2, Real limit_Nm2) {
-  const auto beyond = [&p](std::size_t i, Real its_limit_Nm2) {
-    return element_of(p, i, i) + element_of(p, i + 1, i + 1) > Real(2) * its_limit_Nm2;
-  };
   Real weight = Real(1);
   Real sum_Nm2 = Real(0);
-  bool limited = false;
+  Real least_share = Real(1);
   for (std::size_t t = 0; t < terms; ++t) {
     const std::size_t i = b + 2 * (t + 1);
     const Real factor = p.frames[a][t];
-    weight += factor * factor;
-    if (beyond(i, limit_Nm2)) {
-      limited = true;
-      continue;
-    }
+    const Real share = share_of_noise(p, i, limit_Nm2);
+    const Real its_Nm2 = variance_Nm2 * share;
+    least_share = share < least_share ? share : least_share;
     for (std::size_t side = 0; side < 2; ++side) {
-      add_to_element(p, i + side, b + side, factor * variance_Nm2);
-      add_to_element(p, i + side, i + side, variance_Nm2);
+      add_to_element(p, i + side, b + side, factor * its_Nm2);
+      add_to_element(p, i + side, i + side, its_Nm2);
     }
-    sum_Nm2 += factor * factor * variance_Nm2;
+    sum_Nm2 += factor * factor * its_Nm2;
+    weight += factor * factor;
   }
-  if (beyond(b, weight * limit_Nm2)) {
-    limited = true;
-  } else {
-    sum_Nm2 += variance_Nm2;
-  }
+  const Real share = share_of_noise(p, b, weight * limit_Nm2);
+  sum_Nm2 += variance_Nm2 * share;
   add_to_element(p, b, b, sum_Nm2);
   add_to_element(p, b + 1, b + 1, sum_Nm2);
-  return limited;
+  return !(share > Real(0) && least_share > Real(0));
 }
 
 /// What a measurement T + h'c sees of P, in the frame.

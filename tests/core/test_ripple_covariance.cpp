@@ -247,7 +247,7 @@ TYPED_TEST(RippleCovarianceOf, ProcessNoiseIsThatOfTheCoefficientsThemselves) {
     its.each([&](std::size_t a, std::size_t first, std::size_t further) {
       const double noise_Nm2 = 0.03 * static_cast<double>(a + 1);
       EXPECT_FALSE(strainwave::detail::add_noise(its.p, a, first - 1, further,
-                                                 static_cast<Real>(noise_Nm2), Real(1e3)));
+                                                 static_cast<Real>(noise_Nm2), Real(1e15)));
       for (std::size_t i = first; i < first + 2 * (1 + further); ++i) {
         its.dense[i][i] += noise_Nm2;
       }
@@ -256,34 +256,35 @@ TYPED_TEST(RippleCovarianceOf, ProcessNoiseIsThatOfTheCoefficientsThemselves) {
   });
 }
 
-TYPED_TEST(RippleCovarianceOf, WhatIsBeyondTheLimitGainsNothing) {
+TYPED_TEST(RippleCovarianceOf, APairGainsTheLessTheLessItIsKnown) {
   using Real = TypeParam;
-  Example<Real> its(3, 2);  // the first order has all three further pairs
-  const double limit_Nm2 = 0.5 * (its.dense[5][5] + its.dense[6][6]);
-  std::size_t beyond = 0;
-  for (std::size_t t = 1; t <= 3; ++t) {
-    const std::size_t i = 1 + 2 * t;
-    const bool gains = its.dense[i][i] + its.dense[i + 1][i + 1] <= 2.0 * limit_Nm2 * 0.9999;
-    beyond += gains ? 0U : 1U;
-    its.dense[i][i] += gains ? 0.02 : 0.0;
-    its.dense[i + 1][i + 1] += gains ? 0.02 : 0.0;
+  for (const double of_mean : {100.0, 2.0, 0.9}) {
+    Example<Real> its(3, 2);  // the first order has all three further pairs
+    const double limit_Nm2 = of_mean * 0.5 * (its.dense[5][5] + its.dense[6][6]);
+    std::size_t nothing = 0;
+    const auto add = [&](std::size_t i, double variances_Nm2, double most_Nm2) {
+      const double share = std::fmax(0.0, 1.0 - variances_Nm2 / most_Nm2);
+      nothing += share > 0.0 ? 0U : 1U;
+      its.dense[i][i] += 0.02 * share;
+      its.dense[i + 1][i + 1] += 0.02 * share;
+    };
+    double weight = 1.0;
+    for (const Real each : its.p.frames[0]) {
+      weight += static_cast<double>(each * each);
+    }
+    add(1,
+        static_cast<double>(strainwave::detail::element_of(its.p, 0, 0) +
+                            strainwave::detail::element_of(its.p, 1, 1)),
+        2.0 * weight * limit_Nm2);
+    for (std::size_t i = 3; i <= 7; i += 2) {
+      add(i, its.dense[i][i] + its.dense[i + 1][i + 1], 2.0 * limit_Nm2);
+    }
+    const bool limited = strainwave::detail::add_noise(its.p, 0, 0, 3, Real(0.02),
+                                                       static_cast<Real>(limit_Nm2));
+    EXPECT_EQ(limited, nothing > 0);
+    EXPECT_EQ(limited, of_mean < 1.0);
+    its.expect_dense("given");
   }
-  ASSERT_GT(beyond, 0U);
-  ASSERT_LT(beyond, 3U);
-  double weight = 1.0;
-  for (const Real each : its.p.frames[0]) {
-    weight += static_cast<double>(each * each);
-  }
-  const auto ripple_Nm2 = static_cast<double>(strainwave::detail::element_of(its.p, 0, 0) +
-                                              strainwave::detail::element_of(its.p, 1, 1));
-  if (ripple_Nm2 <= 2.0 * weight * limit_Nm2) {
-    its.dense[1][1] += 0.02;
-    its.dense[2][2] += 0.02;
-  }
-  // A hair below the sum of the second pair's, so that it is beyond.
-  EXPECT_TRUE(strainwave::detail::add_noise(its.p, 0, 0, 3, Real(0.02),
-                                            static_cast<Real>(0.9999 * limit_Nm2)));
-  its.expect_dense("limited");
 }
 
 TYPED_TEST(RippleCovarianceOf, AMeasurementIsKalmansUpdate) {

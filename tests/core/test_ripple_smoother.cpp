@@ -163,12 +163,11 @@ std::vector<double> dense_ripple(std::size_t first) {
     for (std::size_t a = 0; a < 2 && k > first; ++a) {
       const double chord = 2.0 - 2.0 * std::cos((a == 0 ? 2.0 : 4.0) * turn_rad);
       const std::size_t i = 1 + 2 * a;
-      if (p[i][i] + p[i + 1][i + 1] <= 8.0) {
-        const double gained =
-            2.0 * (noise + walk / chord) * std::pow(turn_rad / (2.0 * pi * 30.0), 2);
-        p[i][i] += gained;
-        p[i + 1][i + 1] += gained;
-      }
+      const double gained =
+          2.0 * (noise + walk / chord) * std::pow(turn_rad / (2.0 * pi * 30.0), 2);
+      const double given = gained * std::fmax(0.0, 1.0 - (p[i][i] + p[i + 1][i + 1]) / 8.0);
+      p[i][i] += given;
+      p[i + 1][i + 1] += given;
     }
   }
   std::vector<double> ripple(samples);

@@ -257,6 +257,7 @@ TYPED_TEST(RippleStateOf, ProcessNoiseIsThatOfTheMemory) {
   using Real = TypeParam;
   for (const double rotation_rad : {0.15, -0.02, 0.7, 0.785, -0.79, 2.0}) {
     Setup<Real> our;
+    our.config.initial_amplitude_Nm = Real(1e4);
     our.state.time_since_update_s = Real(1e-3);
     const Setup<Real> before = our;
     const double two = gained_Nm2(2.0, rotation_rad, 1e-3);
@@ -272,6 +273,7 @@ TYPED_TEST(RippleStateOf, AnOrdersProcessNoiseIsSharedByTheSquaresOfItsFactors) 
   using Real = TypeParam;
   for (const double frame : {0.0, 0.75, -0.4}) {
     Setup<Real> our;
+    our.config.initial_amplitude_Nm = Real(1e4);
     our.config.order_count = 1;
     our.config.orders[0].with_load = true;
     our.sample.terms[0].factors[0] = Real(0.75);
@@ -345,12 +347,13 @@ TYPED_TEST(RippleStateOf, VariancesBeyondThoseOfTheBeginningDoNotGrow) {
   const double first = 0.5 * (p[1][1] + p[2][2]);
   const double second = 0.5 * (p[3][3] + p[4][4]);
   ASSERT_GT(std::fabs(first - second), 1e-3);
-  our.config.initial_amplitude_Nm = static_cast<Real>(std::sqrt(0.5 * (first + second)));
+  const double limit_Nm2 = 0.5 * (first + second);
+  our.config.initial_amplitude_Nm = static_cast<Real>(std::sqrt(limit_Nm2));
   our.state.time_since_update_s = Real(1e-3);
   const Setup<Real> before = our;
   EXPECT_EQ(let_ripple_walk(our, 0.15), strainwave::mask(strainwave::StatusFlag::variance_limited));
-  const double two = first < second ? gained_Nm2(2.0, 0.15, 1e-3) : 0.0;
-  const double four = first < second ? 0.0 : gained_Nm2(4.0, 0.15, 1e-3);
+  const double two = gained_Nm2(2.0, 0.15, 1e-3) * std::fmax(0.0, 1.0 - first / limit_Nm2);
+  const double four = gained_Nm2(4.0, 0.15, 1e-3) * std::fmax(0.0, 1.0 - second / limit_Nm2);
   expect_added(our, before, {0.0, two, two, four, four});
   our.config.initial_amplitude_Nm = Real(2);
   EXPECT_EQ(let_ripple_walk(our, 0.15), 0U);

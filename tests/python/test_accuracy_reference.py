@@ -25,7 +25,7 @@ AS_THE_CORE = {
     "load_flattens": True,
     "variance_limited": True,
     "noise_shared": True,
-    "noise_in_turn": True,
+    "noise_after": True,
     "gaps_bridged": True,
     "rest_is_exact": True,
 }

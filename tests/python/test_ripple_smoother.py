@@ -78,7 +78,9 @@ def _dense_smoother(
         covariance = (covariance + covariance.T) / 2
         after.append((mean, covariance))
         if k > start:
-            covariance = covariance + np.diag(np.concatenate([[0.0], np.repeat(gained, 2)]))
+            variances = np.diag(covariance)[1:].reshape(-1, 2).sum(axis=1)
+            given = gained * (1 - variances / (2 * config.initial_amplitude_Nm**2))
+            covariance = covariance + np.diag(np.concatenate([[0.0], np.repeat(given, 2)]))
     smoothed = after[-1][0]
     ripple = np.empty(len(angle) - start)
     ripple[-1] = rows[-1, 1:] @ smoothed[1:]

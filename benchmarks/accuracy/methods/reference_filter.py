@@ -49,13 +49,13 @@ class ReferenceSettings:
     load_flattens : bool
         Whether the load terms' regressor is L / (1 + |L|), as in the core, and not L.
     variance_limited : bool
-        Whether no coefficient's variance may outgrow the initial one, as in the core.
+        Whether a term gains the less process noise the less it is known, and none where its
+        variance is the initial one, as in the core.
     noise_shared : bool
         Whether an order's process noise is divided by the sum of its regressors' squares, so that
         its further terms do not shorten its memory, as in the core.
-    noise_in_turn : bool
-        Whether a term's process noise, and its limit, wait for its turn, one term a sample, as in
-        the core.
+    noise_after : bool
+        Whether process noise comes after the sample and not before it, as in the core.
     gaps_bridged : bool
         Whether an interval of over two typical ones brings the process noise of the typical ones in
         it, as in the core.
@@ -77,7 +77,7 @@ class ReferenceSettings:
     load_flattens: bool = False
     variance_limited: bool = False
     noise_shared: bool = False
-    noise_in_turn: bool = False
+    noise_after: bool = False
     gaps_bridged: bool = False
     rest_is_exact: bool = False
 
@@ -149,7 +149,7 @@ def reference_filter(
     scale_Nm = ROBUST_LIMIT * settings.torque_noise_Nm
     moving_speed = speed = 0.0
     load_Nm = 0.0
-    waiting = _ProcessNoise(settings, orders)
+    noise = _ProcessNoise(settings, orders)
     h = np.ones(size)
     ripple = np.zeros(len(time_s))
     torque_state = np.zeros(len(time_s))
@@ -180,9 +180,8 @@ def reference_filter(
             torque_state[n] = state[0] + expected[n]
             continue
         P[0, 0] += walk * dt
-        if moves:
-            waiting.add(P, h, turned, dt)
-        waiting.take_interval(dt)
+        if moves and not settings.noise_after:
+            noise.add(P, h, turned, dt)
         innovation = rest_Nm - state[0]
         _update(settings, state, P, h, innovation, scale_Nm, moves=moves)
         if moves:
@@ -190,22 +189,20 @@ def reference_filter(
             rate = settings.scale_rate_per_rad * min(abs(turned), 3.0)
             scale_Nm *= np.exp(rate * (beyond - SHARE_BEYOND_SCALE))
             scale_Nm = max(scale_Nm, LEAST_SCALE * settings.torque_noise_Nm)
+        if moves and settings.noise_after:
+            noise.add(P, h, turned, dt)
+        noise.take_interval(dt)
         torque_state[n] = state[0] + expected[n]
         load_Nm += dt / (dt + LOAD_SMOOTHING_S) * (torque_Nm[n] - ripple[n] - load_Nm)
     return ReferenceResult(torque_Nm - ripple, ripple, torque_state, state[1:].copy())
 
 
 class _ProcessNoise:
-    # What the terms' variances gain with the angle, and what of it waits for their turn.
+    # What the terms' variances gain with the angle.
 
     def __init__(self, settings: ReferenceSettings, orders: NDArray[np.float64]) -> None:
         self._settings = settings
         self._orders = orders
-        self._waiting = np.zeros(len(orders))
-        # The core has an order's terms side by side; orders in the sequence of their first terms.
-        first = [int(np.argmax(orders == order)) for order in orders]
-        self._sequence = np.argsort(first, kind="stable")
-        self._turn = 0
         self._typical_s = 0.0
 
     def add(
@@ -223,22 +220,36 @@ class _ProcessNoise:
             self._orders, turned_rad / pieces, dt_s / pieces, R, walk
         )
         gained /= (2 * np.pi * settings.memory_turns) ** 2
+        squares = h[1::2] ** 2 + h[2::2] ** 2
+        seen = np.array([squares[self._orders == order].sum() for order in self._orders])
         if settings.noise_shared:
-            squares = h[1::2] ** 2 + h[2::2] ** 2
-            gained /= [squares[self._orders == order].sum() for order in self._orders]
-        self._waiting += gained
-        given = np.arange(len(self._waiting))
-        if settings.noise_in_turn:
-            self._turn = (self._turn + 1) % len(self._waiting)
-            given = self._sequence[[self._turn]]
-        for term in given:
-            for i in (1 + 2 * term, 2 + 2 * term):
-                if settings.variance_limited and P[i, i] > settings.initial_amplitude_Nm**2:
-                    shrink = settings.initial_amplitude_Nm / np.sqrt(P[i, i])
-                    P[i, :] *= shrink
-                    P[:, i] *= shrink
-                P[i, i] += self._waiting[term]
-        self._waiting[given] = 0.0
+            gained /= seen
+        if settings.variance_limited:
+            gained *= self._shares(P, h, squares, seen)
+        P[np.diag_indices_from(P)] += np.concatenate([[0.0], np.repeat(gained, 2)])
+
+    def _shares(
+        self,
+        P: NDArray[np.float64],
+        h: NDArray[np.float64],
+        squares: NDArray[np.float64],
+        seen: NDArray[np.float64],
+    ) -> NDArray[np.float64]:
+        # Of an order's first term the variance is that of the ripple that all of them make.
+        most = 2 * self._settings.initial_amplitude_Nm**2
+        variances = np.diag(P)[1::2] + np.diag(P)[2::2]
+        shares = 1 - variances / most
+        for order in dict.fromkeys(self._orders):
+            terms = np.flatnonzero(self._orders == order)
+            factors = np.sign(h[1 + 2 * terms] * h[1 + 2 * terms[0]] + h[2 + 2 * terms] * h[
+                2 + 2 * terms[0]
+            ]) * np.sqrt(squares[terms])
+            ripple = sum(
+                factors @ P[np.ix_(side + 2 * terms, side + 2 * terms)] @ factors for side in (1, 2)
+            )
+            shares[terms[0]] = 1 - ripple / (seen[terms[0]] * most)
+        clipped: NDArray[np.float64] = np.maximum(shares, 0.0)
+        return clipped
 
     def take_interval(self, dt_s: float) -> None:
         if self._typical_s > 0.0:

@@ -133,9 +133,9 @@ def state_bytes(filter_name: str, gauges: int, capacity: int, real_bytes: int) -
     column = -(-2 * capacity // step) * step
     reals = (2 * capacity + 1) * column
     if filter_name == "ripple":
-        reals, fixed, code = reals + 5 * capacity, 392 + 52 * real_bytes, 0
+        reals, fixed, code = reals + 5 * capacity, 400 + 52 * real_bytes, 0
     else:  # the chain keeps the last sample's codes besides
-        reals, fixed, code = reals + capacity, 404 + 13 * real_bytes, 4
+        reals, fixed, code = reals + capacity, 412 + 13 * real_bytes, 4
     total = real_bytes * reals + (8 + code + 3 * real_bytes) * gauges + fixed
     return -(-total // 8) * 8
 

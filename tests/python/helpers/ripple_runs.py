@@ -97,8 +97,8 @@ class Dense:
     def walk(self, h, turned, interval):
         """Process noise of the coefficients, after a sample: an order's over its squares in h.
 
-        A pair that is less known than in the beginning gains nothing; the first pair of an order
-        is judged by the ripple that all of them make.
+        A pair gains the less, the less it is known; as little as in the beginning: nothing. The
+        first pair of an order is judged by the ripple that all of them make.
         """
         c = self.config
         R, walk = c.torque_noise_Nm**2, c.torque_walk_Nm_per_sqrt_s**2
@@ -117,15 +117,13 @@ class Dense:
             each = 2 * share * (R + walk * interval / pieces / (4 * np.sin(arc / 2) ** 2)) / seen
             most = 2 * c.initial_amplitude_Nm**2
             for i in rows[2::2]:
-                if variances[i] + variances[i + 1] <= most:
-                    added[i : i + 2] = each
+                added[i : i + 2] = each * max(0.0, 1 - (variances[i] + variances[i + 1]) / most)
             factors = h[rows[0::2]] / h[rows[0]]
             ripple = sum(
                 factors @ self.P[np.ix_(rows[side::2], rows[side::2])] @ factors
                 for side in (0, 1)
             )
-            if ripple <= seen * most:
-                added[rows[:2]] = each
+            added[rows[:2]] = each * max(0.0, 1 - ripple / (seen * most))
         self.P += np.diag(added)
 
     def run(self, time, angle, torque, expected):
