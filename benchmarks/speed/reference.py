@@ -25,7 +25,7 @@ DEFAULT_TERMS: Final = (
 )
 DEFAULT_SETTINGS: Final = ReferenceSettings(
     DEFAULT_TERMS,
-    memory_turns=10.0,
+    memory_turns=300.0,
     contact_rule="jump",
     scale_rate_per_rad=0.06,
     load_flattens=True,

@@ -68,7 +68,7 @@ def test_package_agrees_with_both_references(recording, found, precision):
     ).ripple_Nm
     assert agreement("published", precision, ripple, found["published"]).ok
     with_terms = [sw.RippleOrder(n, with_load=True, with_speed=True) for n in (2, 4)]
-    config = sw.RippleFilterConfig(orders=[*with_terms, Fraction(1, 100)], memory_turns=10.0)
+    config = sw.RippleFilterConfig(orders=[*with_terms, Fraction(1, 100)], memory_turns=300.0)
     ripple = (
         sw.RippleFilter(config, dtype=dtype)
         .process(recording.time_s[:SAMPLES], recording.motor_angle_rad[:SAMPLES], torque)

@@ -59,7 +59,7 @@ class DenseRipple {
   static constexpr Real noise_Nm2 = Real(0.04 * 0.04);
   static constexpr Real walk_Nm2_per_s = Real(1.3 * 1.3);
   static constexpr Real initial_Nm2 = Real(4);
-  static constexpr Real memory_rad = Real(2 * std::numbers::pi * 10);
+  static constexpr Real memory_rad = Real(2 * std::numbers::pi * 300);
 
   static constexpr Real share(Real time_constant_s) {
     return interval_s / (interval_s + time_constant_s);
@@ -100,27 +100,26 @@ class DenseRipple {
   }
 
   void add_noise(const Waves& waves, Real rotation_rad) {
+    Eigen::Matrix<Real, pairs, 1> gained = Eigen::Matrix<Real, pairs, 1>::Zero();
     const Real share_of_memory = rotation_rad * rotation_rad / (memory_rad * memory_rad);
     for (int a = 0; a < 3; ++a) {
       const int begin = first_pair[static_cast<std::size_t>(a)];
       const int count = first_pair[static_cast<std::size_t>(a) + 1] - begin;
       const Real chord = (waves.col(a) - last_waves_.col(a)).squaredNorm();
       if (chord > Real(0)) {
-        waiting_.segment(begin, count).array() +=
-            Real(2) * share_of_memory * (noise_Nm2 + walk_Nm2_per_s * interval_s / chord) /
-            h_.segment(1 + 2 * begin, 2 * count).squaredNorm();
+        gained.segment(begin, count).array() = Real(2) * share_of_memory *
+                                               (noise_Nm2 + walk_Nm2_per_s * interval_s / chord) /
+                                               h_.segment(1 + 2 * begin, 2 * count).squaredNorm();
       }
     }
-    pair_ = pair_ + 1 < pairs ? pair_ + 1 : 0;
-    for (int i = 1 + 2 * pair_; i < 3 + 2 * pair_; ++i) {
+    for (int i = 1; i < size; ++i) {
       if (P_(i, i) > initial_Nm2) {
         const Real shrink = std::sqrt(initial_Nm2 / P_(i, i));
         P_.row(i) *= shrink;
         P_.col(i) *= shrink;
       }
-      P_(i, i) += waiting_(pair_);
+      P_(i, i) += gained((i - 1) / 2);
     }
-    waiting_(pair_) = 0;
   }
 
   void update(Real innovation_Nm, bool moving) {
@@ -159,8 +158,6 @@ class DenseRipple {
   Matrix P_ = initial_Nm2 * Matrix::Identity();
   Vector h_ = Vector::Unit(0);
   Waves last_waves_ = Waves::Zero();
-  Eigen::Matrix<Real, pairs, 1> waiting_ = Eigen::Matrix<Real, pairs, 1>::Zero();
-  int pair_ = 0;
   Real scale_Nm_ = Real(0.12);
   Real speed_ = 0;
   Real smoothed_speed_ = 0;

@@ -24,6 +24,7 @@ inline constexpr strainwave::OscillatorFilterConfig<Real, 3> published =
 template <class Real>
 [[nodiscard]] constexpr strainwave::RippleFilterConfig<Real, 7> default_configuration() {
   strainwave::RippleFilterConfig<Real, 7> config;
+  config.memory_turns = Real(300);  // three turns of the output, so that order 1/100 is seen
   config.order_count = 3;
   config.orders[0] = {.order = {2, 1}, .with_load = true, .with_speed = true};
   config.orders[1] = {.order = {4, 1}, .with_load = true, .with_speed = true};

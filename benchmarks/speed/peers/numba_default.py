@@ -27,7 +27,7 @@ _WALK: Final = _float(1.3**2)
 _LIMIT: Final = _float(2.0**2)
 _RATED_NM: Final = _float(40)
 _REFERENCE_SPEED: Final = _float(150)
-_MEMORY_RAD: Final = _float(2 * math.pi * 10)
+_MEMORY_RAD: Final = _float(2 * math.pi * 300)
 _LEAST_SPEED: Final = _float(2)
 _MOVING_SHARE: Final = _float(SAMPLE_PERIOD_S / (SAMPLE_PERIOD_S + 0.05))
 _SPEED_SHARE: Final = _float(SAMPLE_PERIOD_S / (SAMPLE_PERIOD_S + 0.01))
@@ -51,9 +51,7 @@ def _regressors(angle_rad: float, load: np.float32, speed: np.float32, waves: An
 
 
 @numba.njit(fastmath=numba_options.fastmath)  # type: ignore[untyped-decorator]
-def _add_noise(
-    P: Any, h: Any, waves: Any, last: Any, rotation: np.float32, waiting: Any, pair: int
-) -> None:
+def _add_noise(P: Any, h: Any, waves: Any, last: Any, rotation: np.float32, gained: Any) -> None:
     share = (rotation / _MEMORY_RAD) ** 2
     for a in range(3):
         cosine, sine = waves[a, 0] - last[a, 0], waves[a, 1] - last[a, 1]
@@ -61,20 +59,19 @@ def _add_noise(
         weight = _float(0)
         for i in range(1 + 2 * _FIRST[a], 1 + 2 * _FIRST[a + 1]):
             weight += h[i] * h[i]
-        gained = _float(0)
+        of_order = _float(0)
         if chord > 0:
-            gained = _float(2) * share * (_R + _WALK * _DT_S / chord) / weight
+            of_order = _float(2) * share * (_R + _WALK * _DT_S / chord) / weight
         for b in range(_FIRST[a], _FIRST[a + 1]):
-            waiting[b] += gained
-    for i in range(1 + 2 * pair, 3 + 2 * pair):
+            gained[b] = of_order
+    for i in range(1, _SIZE):
         if P[i, i] > _LIMIT:
             shrink = np.sqrt(_LIMIT / P[i, i])
             for j in range(_SIZE):
                 P[i, j] *= shrink
             for j in range(_SIZE):
                 P[j, i] *= shrink
-        P[i, i] += waiting[pair]
-    waiting[pair] = 0
+        P[i, i] += gained[(i - 1) // 2]
 
 
 @numba.njit(fastmath=numba_options.fastmath)  # type: ignore[untyped-decorator]
@@ -155,10 +152,9 @@ def filtered(torque: NDArray[Any], angle_rad: NDArray[Any]) -> NDArray[Any]:
     seen = np.zeros(_SIZE, np.float32)
     waves = np.zeros((3, 2), np.float32)
     last = np.zeros((3, 2), np.float32)
-    waiting = np.zeros(_PAIRS, np.float32)
+    gained = np.zeros(_PAIRS, np.float32)
     scale = _float(0.12)
     speed = smoothed = load_Nm = _float(0)
-    pair = 0
     ripple = np.empty(len(torque), np.float32)
     for k in range(len(torque)):
         rotation = _float(angle_rad[k] - angle_rad[k - 1]) if k > 0 else _float(0)
@@ -180,8 +176,7 @@ def filtered(torque: NDArray[Any], angle_rad: NDArray[Any]) -> NDArray[Any]:
         else:
             P[0, 0] += _WALK * _DT_S
             if moving:
-                pair = pair + 1 if pair + 1 < _PAIRS else 0
-                _add_noise(P, h, waves, last, rotation, waiting, pair)
+                _add_noise(P, h, waves, last, rotation, gained)
             innovation = rest - x[0]
             _update(x, P, h, seen, innovation, scale, moving)
             if moving:

@@ -123,11 +123,10 @@ class LeanDefault:
     def __init__(self) -> None:
         self.x = counted(np.zeros(15))
         self.p = [counted(4.0 * np.eye(15)[i]) for i in range(15)]
-        self.waiting = counted(np.zeros(7))
         self.scale, self.load = Counted(0.12), Counted(0.0)
         self.speed, self.smoothed = Counted(0.0), Counted(0.0)
         self.waves: list[tuple[Counted, Counted]] = []
-        self.angle, self.turn, self.started = 0.0, 0, False
+        self.angle, self.started = 0.0, False
 
     def step(self, torque: float, angle: float) -> float:
         rotation = Counted(angle - self.angle) if self.started else Counted(0.0)
@@ -207,7 +206,8 @@ class LeanDefault:
         self.scale = max(self.scale, Counted(0.02), key=lambda each: each.value)
 
     def _add_noise(self, waves, rotation: Counted, h: list[Counted]) -> None:
-        share = rotation * rotation * (2 / (20 * math.pi) ** 2)
+        noise: list[Counted] = [Counted(0.0)] * 7
+        share = rotation * rotation * (2 / (600 * math.pi) ** 2)
         # An order's wave has length 1: its regressors' squares are those of its factors.
         rate = h[3] * h[3] + h[4] * h[4] + h[5] * h[5] + h[6] * h[6] + 1.0
         for order, weight in enumerate((rate, rate, Counted(1.0))):
@@ -219,13 +219,11 @@ class LeanDefault:
             gained = share * (Counted(1.69e-3) / chord + 0.0016) / weight
             for pair, (of, _) in enumerate(self.pairs):
                 if of == order:
-                    self.waiting[pair] = self.waiting[pair] + gained
-        self.turn = (self.turn + 1) % 7
-        for i in (1 + 2 * self.turn, 2 + 2 * self.turn):
+                    noise[pair] = gained
+        for i in range(1, 15):
             if self.p[i][i].value > 4.0:
                 shrink = math.sqrt(4.0 / self.p[i][i].value)
                 for j in range(15):
                     self.p[max(i, j)][min(i, j)] = self.p[max(i, j)][min(i, j)] * shrink
                 self.p[i][i] = self.p[i][i] * shrink
-            self.p[i][i] = self.p[i][i] + self.waiting[self.turn]
-        self.waiting[self.turn] = Counted(0.0)
+            self.p[i][i] = self.p[i][i] + noise[(i - 1) // 2]
