@@ -11,14 +11,13 @@ from benchmarks.speed.inputs import Array, Recording
 from benchmarks.speed.reference import default_ripple, published_ripple
 
 #: Largest rms difference of predicted ripple to the dense reference in double, Nm, beside a ripple
-#: of some 5 Nm. The core gives the default filter its process noise after the update, the reference
-#: before it: a sample's worth, 1e-3 Nm. Whether an innovation is beyond the tracked scale is a question
-#: to which rounding changes answers.
+#: of some 5 Nm. The default filter's core limits variances pair by pair, the reference coefficient by
+#: coefficient; 5e-3 Nm have been seen between them, and 1e-3 Nm of rounding in float.
 TOLERANCE_NM: Final = {
     ("published", "double"): 1e-9,
     ("published", "float"): 2e-5,
-    ("default", "double"): 5e-3,
-    ("default", "float"): 5e-3,
+    ("default", "double"): 1e-2,
+    ("default", "float"): 1e-2,
 }
 
 
