@@ -179,7 +179,7 @@ inline void take_state(const OscillatorLanes<Real, Orders>& lanes, std::size_t l
     // The output row is that of the last sample; the state's angle is that of the next one.
     constexpr Real half_range = Real(2) * static_cast<Real>(Fraction{1} << (sizeof(Real) * 8 - 2));
     const Real turns = angle_of(lanes.output[2 * a][lane], lanes.output[2 * a + 1][lane]) *
-                       (Real(0.9999999) / two_pi<Real>);
+                       (Real(1) / two_pi<Real>);
     state.angle[a] = 2U * static_cast<Fraction>(static_cast<Signed>(turns * half_range));
   }
   turn_on(config, state, lanes.pending_rotation_rad[lane] / two_pi<Real>, false);
