@@ -134,7 +134,7 @@ template <class Real, std::size_t MaxOrders>
   std::vector<Chunk<Real, MaxOrders>> chunks(1);
   // Whole lines of the cache, and an odd number of them, so that chunks do not meet in one set.
   const std::size_t line = block_width<Real>;
-  const std::size_t length = (channel.sample_count / (count * line) | 1U) * line;
+  const std::size_t length = ((channel.sample_count / (count * line) + 1U) | 1U) * line;
   for (std::size_t start = length; start < channel.sample_count; start += length) {
     const std::size_t warm_up = warm_up_before(config, channel, start, memories);
     if (warm_up <= length / 2) {
