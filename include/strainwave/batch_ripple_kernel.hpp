@@ -1,0 +1,682 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file batch_ripple_kernel.hpp
+/// step() of the ripple filter on lanes, a tile at a time.
+///
+/// Included by batch_ripple.hpp within the namespace of each vector level.  The covariance is in
+/// memory, its lower triangle alone; what runs over it is written out.
+// No guard and no includes: see lanes_each_level.hpp.
+
+#define STRAINWAVE_INLINE [[gnu::always_inline, gnu::no_sanitize("undefined")]] inline
+
+template <class Real>
+using WholeLanes = typename LaneVectors<Real>::Wholes;
+
+template <class Real>
+STRAINWAVE_INLINE WholeLanes<Real> load_whole(const typename LaneVectors<Real>::Whole* from) {
+  WholeLanes<Real> whole;
+  __builtin_memcpy(&whole, from, sizeof(whole));
+  return whole;
+}
+template <class Real>
+STRAINWAVE_INLINE WholeLanes<Real> load_whole(const Real* bits) {
+  WholeLanes<Real> whole;
+  __builtin_memcpy(&whole, bits, sizeof(whole));
+  return whole;
+}
+template <class Real>
+STRAINWAVE_INLINE void store_whole(WholeLanes<Real> whole, typename LaneVectors<Real>::Whole* to) {
+  __builtin_memcpy(to, &whole, sizeof(whole));
+}
+
+/// The lower 32 bits with their sign: a fraction of a turn wraps there.
+template <class Real>
+STRAINWAVE_INLINE WholeLanes<Real> wrapped(WholeLanes<Real> whole) {
+  if constexpr (sizeof(Real) == 4) {
+    return whole;
+  } else {
+    return (whole << 32) >> 32;
+  }
+}
+
+template <class Real>
+STRAINWAVE_INLINE Lanes<Real> to_lanes(WholeLanes<Real> whole) {
+  return Lanes<Real>(__builtin_convertvector(whole, typename LaneVectors<Real>::Reals));
+}
+
+template <class Real>
+STRAINWAVE_INLINE Lanes<Real> one_where(LaneMask<Real> mask) {
+  return select(mask, Lanes<Real>(Real(1)), Lanes<Real>(Real(0)));
+}
+
+/// Cosine and sine of fractions of a turn, either side of zero, in units of 2^-32.
+template <class Real>
+STRAINWAVE_INLINE CosSin<Lanes<Real>> cos_sin_of_fraction(WholeLanes<Real> fraction) {
+  using L = Lanes<Real>;
+  using Wholes = WholeLanes<Real>;
+  constexpr typename LaneVectors<Real>::Whole eighth = 1 << 29;
+  const Wholes quarters = wrapped<Real>(fraction + eighth) >> 30;
+  const Wholes rest = wrapped<Real>(fraction - (quarters << 30));
+  const CosSin<L> part = cos_sin_reduced(to_lanes<Real>(rest) * L(two_pi<Real> / Real(4294967296.0)));
+  const Wholes odd = -(quarters & 1);
+  constexpr int sign_shift = 8 * static_cast<int>(sizeof(Real)) - 2;
+  const Wholes sine_sign = (quarters & 2) << sign_shift;
+  const Wholes cosine_sign = ((quarters + 1) & 2) << sign_shift;
+  const auto cosine_bits = reinterpret_cast<Wholes>(part.cosine.v);
+  const auto sine_bits = reinterpret_cast<Wholes>(part.sine.v);
+  const Wholes turned_cosine = ((cosine_bits & ~odd) | (sine_bits & odd)) ^ cosine_sign;
+  const Wholes turned_sine = ((sine_bits & ~odd) | (cosine_bits & odd)) ^ sine_sign;
+  using Vector = typename L::Vector;
+  return {L(reinterpret_cast<Vector>(turned_cosine)), L(reinterpret_cast<Vector>(turned_sine))};
+}
+
+/// Angles of one channel as nearest turns and fraction; turns that no lane takes where they are out
+/// of reach.
+template <class Real>
+[[gnu::no_sanitize("undefined")]] inline void convert_angles(const double* angle_rad,
+                                                             std::size_t count, Real* turns,
+                                                             Real* fraction) {
+  using Whole = typename LaneVectors<Real>::Whole;
+  using Wide = Lanes<double>;
+  using Wides = LaneVectors<double>::Wholes;
+  using Narrow [[gnu::vector_size(Wide::count * sizeof(Whole))]] = Whole;
+  using Low [[gnu::vector_size(Wide::count * 4)]] = std::int32_t;
+  // Rounding to a whole number by one so large that its last digit is one; the digits are its bits.
+  const Wide rounder = 6755399441055744.0;
+  double rest[Wide::count];
+  for (std::size_t k = 0; k < count; k += Wide::count) {
+    const std::size_t left = count - k < Wide::count ? count - k : Wide::count;
+    const double* from = angle_rad + k;
+    if (left < Wide::count) {
+      for (std::size_t i = 0; i < Wide::count; ++i) {
+        rest[i] = i < left ? from[i] : 0.0;
+      }
+      from = rest;
+    }
+    const Wide in_turns = Wide::load(from) / Wide(two_pi<double>);
+    const Wide whole = in_turns + rounder;
+    const Wide units = (in_turns - (whole - rounder)) * Wide(4294967296.0) + rounder;
+    const auto reachable = absolute(in_turns) < Wide(static_cast<double>(detail::most_lane_turns));
+    const Wide taken = select(reachable, whole, rounder - Wide(2147483648.0));
+    const auto low_turns =
+        __builtin_convertvector(reinterpret_cast<Wides>(taken.v), Low);
+    const auto low_units = __builtin_convertvector(reinterpret_cast<Wides>(units.v), Low);
+    const Narrow turns_here = __builtin_convertvector(low_turns, Narrow);
+    const Narrow units_here = __builtin_convertvector(low_units, Narrow);
+    __builtin_memcpy(turns + k, &turns_here, left * sizeof(Real));
+    __builtin_memcpy(fraction + k, &units_here, left * sizeof(Real));
+  }
+}
+
+/// One group of lanes at one sample.
+template <class Real, std::size_t Pairs>
+struct RippleGroup {
+  using L = Lanes<Real>;
+  using Mask = LaneMask<Real>;
+  using Wholes = WholeLanes<Real>;
+  using Memory = RippleLanes<Real, Pairs>;
+  static constexpr std::size_t coefficients = 2 * Pairs;
+
+  Memory& memory;
+  const RippleTile<Real>& tile;
+  const RippleAlone& alone;
+  std::size_t lane;
+  std::size_t k;
+
+  L torque_Nm;
+  L expected_Nm;
+  L interval_s;
+  Wholes turns;
+  Wholes fraction;
+  L rotation_rad;
+  L speed_rad_s;
+  L smoothed_speed_rad_s;
+  Mask usual;
+  Mask moving;
+  Mask above_nyquist;
+  Mask limited;
+
+  L cosines[Pairs];
+  L sines[Pairs];
+  L factors[Pairs];
+  L h[coefficients];
+  L pc[coefficients];
+  L row[coefficients];
+
+  L ripple_Nm;
+  L clean_Nm;
+  L all_removed_Nm;
+  L innovation_Nm;
+  L variance_Nm2;
+
+  STRAINWAVE_INLINE RippleGroup(Memory& memory_of, const RippleTile<Real>& tile_of,
+                                const RippleAlone& alone_of, std::size_t lane_of,
+                                std::size_t k_of)
+      : memory(memory_of), tile(tile_of), alone(alone_of), lane(lane_of), k(k_of) {}
+
+  STRAINWAVE_INLINE static Mask none() { return L(Real(1)) <= L(Real(0)); }
+  STRAINWAVE_INLINE L load(const Real* of_row) const { return L::load(of_row + lane); }
+  STRAINWAVE_INLINE void store(L value, Real* of_row) const { value.store(of_row + lane); }
+
+  // ---- sample -----------------------------------------------------------------------------------
+
+  STRAINWAVE_INLINE void take_sample() {
+    const std::size_t place = k * block_width<Real> + lane;
+    torque_Nm = L::load(tile.measured_torque_Nm + place);
+    turns = load_whole<Real>(tile.turns + place);
+    fraction = load_whole<Real>(tile.fraction + place);
+    interval_s = L::load(tile.interval_s + k * tile.interval_stride + lane);
+    expected_Nm = L::load(tile.expected_torque_Nm + k * tile.expected_stride + lane);
+  }
+
+  /// Rotation, speeds, and whether the lane goes on as usual.
+  STRAINWAVE_INLINE void take_phase() {
+    const Wholes last_turns = load_whole<Real>(memory.last_turns + lane);
+    const Wholes last_fraction = load_whole<Real>(memory.last_fraction + lane);
+    const L per_unit = Real(1) / Real(4294967296.0);
+    const L turned = to_lanes<Real>(wrapped<Real>(fraction - last_fraction)) * per_unit;
+    const L on_record = to_lanes<Real>(turns - last_turns) +
+                        (to_lanes<Real>(fraction) - to_lanes<Real>(last_fraction)) * per_unit;
+    rotation_rad = turned * L(two_pi<Real>);
+    const L last_interval_s = load(memory.interval_s);
+    if (!((last_interval_s <= interval_s) & (interval_s <= last_interval_s)).all()) {
+      take_interval();
+    }
+    const L typical_s = load(memory.typical_interval_s);
+    const L largest_Nm = Real(largest_usable_torque_Nm);
+    const L old_speed_rad_s = load(memory.speed_rad_s);
+    usual = (load(memory.in_step) > L(Real(0))) & (absolute(torque_Nm) <= largest_Nm) &
+            (absolute(expected_Nm) <= largest_Nm) & (interval_s > L(Real(0))) &
+            (interval_s <= L(static_cast<Real>(detail::longest_interval_s))) &
+            (interval_s <= L(static_cast<Real>(detail::least_gap)) * typical_s) &
+            (absolute(on_record - turned) < L(Real(0.25))) &
+            (absolute(rotation_rad) <=
+             L(static_cast<Real>(detail::largest_motor_speed_rad_s)) * interval_s);
+    const L measured_Nm = load(memory.measured_Nm);
+    const Mask held =
+        (absolute(rotation_rad) <= L(Real(0))) & (torque_Nm <= measured_Nm) &
+        (measured_Nm <= torque_Nm) & (interval_s < L(static_cast<Real>(detail::longest_hold_s))) &
+        (absolute(old_speed_rad_s) * interval_s >=
+         L(static_cast<Real>(detail::least_travel_of_a_held_sample_rad)));
+    usual = usual & !held;
+    const L speed_now_rad_s = rotation_rad * load(memory.per_interval);
+    speed_rad_s =
+        fused(load(memory.speed_share), speed_now_rad_s - old_speed_rad_s, old_speed_rad_s);
+    const L old_smoothed_rad_s = load(memory.smoothed_speed_rad_s);
+    smoothed_speed_rad_s = fused(load(memory.smoothed_speed_share),
+                                 speed_now_rad_s - old_smoothed_rad_s, old_smoothed_rad_s);
+    moving = absolute(smoothed_speed_rad_s) >= load(memory.minimum_speed_rad_s);
+    above_nyquist = absolute(load(memory.highest_order) * rotation_rad) > L(pi<Real>);
+  }
+
+  /// What of an interval is divided.
+  STRAINWAVE_INLINE void take_interval() const {
+    store(interval_s, memory.interval_s);
+    store(L(Real(1)) / interval_s, memory.per_interval);
+    store(interval_s / (interval_s + L(static_cast<Real>(detail::speed_term_smoothing_s))),
+          memory.speed_share);
+    store(interval_s / (interval_s + L(static_cast<Real>(detail::speed_smoothing_s))),
+          memory.smoothed_speed_share);
+    store(interval_s / (interval_s + L(static_cast<Real>(detail::load_smoothing_s))),
+          memory.load_share);
+  }
+
+  /// Sends lanes to do this sample alone.
+  STRAINWAVE_INLINE void send(Mask lanes) const {
+    store(one_where(lanes), memory.alone);
+    alone.leave(alone.block, lane, L::count, k);
+  }
+
+  // ---- regressors -------------------------------------------------------------------------------
+
+  STRAINWAVE_INLINE void find_own_angles() {
+    for (std::size_t a = 0; a < memory.order_count; ++a) {
+      store_whole<Real>(wrapped<Real>(fraction * load_whole<Real>(memory.numerator[a] + lane)),
+                        memory.order_fraction[a] + lane);
+    }
+    store(rotation_rad, memory.rotation_rad);
+    store(speed_rad_s, memory.new_speed_rad_s);
+    store(one_where(!usual), memory.alone);
+    alone.find_angles(alone.block, lane, L::count, k);
+    rotation_rad = load(memory.rotation_rad);
+  }
+
+  STRAINWAVE_INLINE Wholes order_fraction(std::size_t a) const {
+    return memory.any_own_angle
+               ? load_whole<Real>(memory.order_fraction[a] + lane)
+               : wrapped<Real>(fraction * load_whole<Real>(memory.numerator[a] + lane));
+  }
+
+  STRAINWAVE_INLINE void find_waves() {
+    for (std::size_t a = 0; a < memory.order_count; ++a) {
+      if (memory.orders[a].in_series) {
+        cosines[a] = fused_minus(sines[a - 1], sines[0], cosines[a - 1] * cosines[0]);
+        sines[a] = fused(cosines[a - 1], sines[0], sines[a - 1] * cosines[0]);
+      } else {
+        const CosSin<L> wave = cos_sin_of_fraction<Real>(order_fraction(a));
+        cosines[a] = wave.cosine;
+        sines[a] = wave.sine;
+      }
+    }
+  }
+
+  STRAINWAVE_INLINE void find_factors() {
+    const L load_ratio = load(memory.load_Nm) * load(memory.per_rated_torque);
+    const L speed = absolute(speed_rad_s);
+    L by_kind[3];
+    by_kind[0] = load_ratio / (L(Real(1)) + absolute(load_ratio));
+    by_kind[1] = speed * load(memory.per_reference_speed);
+    by_kind[2] = speed_rad_s / (speed + L(Real(1)));
+    for (std::size_t a = 0; a < memory.order_count; ++a) {
+      const RippleOrderLayout& order = memory.orders[a];
+      for (std::size_t t = 0; t < order.terms; ++t) {
+        factors[order.first_pair + 1 + t] = by_kind[static_cast<std::size_t>(order.factors[t])];
+      }
+    }
+  }
+
+  /// The ripple that is removed, and torque without it and without any.
+  STRAINWAVE_INLINE void remove_ripple() {
+    L removed_Nm = Real(0);
+    L kept_Nm = Real(0);
+    for (std::size_t a = 0; a < memory.order_count; ++a) {
+      const RippleOrderLayout& order = memory.orders[a];
+      const std::size_t b = 2 * order.first_pair;
+      L cosine_Nm = load(memory.coefficients_Nm[b]);
+      L sine_Nm = load(memory.coefficients_Nm[b + 1]);
+      for (std::size_t t = 0; t < order.terms; ++t) {
+        const L factor = factors[order.first_pair + 1 + t];
+        cosine_Nm = fused(factor, load(memory.coefficients_Nm[b + 2 * t + 2]), cosine_Nm);
+        sine_Nm = fused(factor, load(memory.coefficients_Nm[b + 2 * t + 3]), sine_Nm);
+      }
+      const L wave_Nm = fused(cosines[a], cosine_Nm, sines[a] * sine_Nm);
+      const L kept = memory.any_kept ? load(memory.kept[a]) : L(Real(0));
+      kept_Nm = fused(kept, wave_Nm, kept_Nm);
+      removed_Nm = fused(L(Real(1)) - kept, wave_Nm, removed_Nm);
+    }
+    if (memory.any_own_angle) {
+      removed_Nm = removed_Nm + load(memory.frozen_Nm);
+    }
+    ripple_Nm = removed_Nm;
+    clean_Nm = torque_Nm - removed_Nm;
+    all_removed_Nm = clean_Nm - kept_Nm;
+  }
+
+  // ---- frame ------------------------------------------------------------------------------------
+
+  /// move_row() of ripple_covariance.hpp.
+  STRAINWAVE_INLINE void move_row(std::size_t b, std::size_t terms, const L* steps) const {
+    L moved[coefficients];
+    for (std::size_t j = 0; j < coefficients; ++j) {
+      moved[j] = load(memory.covariance_Nm2[detail::lane_element(b, j)]);
+    }
+    L torque = load(memory.torque_row_Nm2[b]);
+    for (std::size_t t = 0; t < terms; ++t) {
+      const std::size_t i = b + 2 * (t + 1);
+      for (std::size_t j = 0; j < coefficients; ++j) {
+        moved[j] = fused(steps[t], load(memory.covariance_Nm2[detail::lane_element(i, j)]), moved[j]);
+      }
+      torque = fused(steps[t], load(memory.torque_row_Nm2[i]), torque);
+    }
+    for (std::size_t t = 0; t < terms; ++t) {
+      moved[b] = fused(steps[t], moved[b + 2 * (t + 1)], moved[b]);
+    }
+    for (std::size_t j = 0; j < coefficients; ++j) {
+      store(moved[j], memory.covariance_Nm2[detail::lane_element(b, j)]);
+    }
+    store(torque, memory.torque_row_Nm2[b]);
+  }
+
+  /// follow() and enter_frame() of ripple_covariance.hpp.
+  STRAINWAVE_INLINE void enter_frame() {
+    Mask free = usual;
+    for (std::size_t i = 2 * memory.pair_count; i < coefficients; ++i) {
+      h[i] = Real(0);
+    }
+    for (std::size_t a = 0; a < memory.order_count; ++a) {
+      const RippleOrderLayout& order = memory.orders[a];
+      const std::size_t b = 2 * order.first_pair;
+      L offsets[3];
+      Mask too_far = none();
+      for (std::size_t t = 0; t < order.terms; ++t) {
+        const std::size_t pair = order.first_pair + 1 + t;
+        offsets[t] = factors[pair] - load(memory.frames[pair]);
+        too_far = too_far |
+                  (absolute(offsets[t]) > L(static_cast<Real>(detail::widest_frame_offset)));
+      }
+      too_far = too_far & free;
+      if (too_far.any()) [[unlikely]] {
+        move_frame(order, too_far, offsets);
+        free = free & !too_far;
+      }
+      h[b] = cosines[a];
+      h[b + 1] = sines[a];
+      for (std::size_t t = 0; t < order.terms; ++t) {
+        h[b + 2 * t + 2] = offsets[t] * cosines[a];
+        h[b + 2 * t + 3] = offsets[t] * sines[a];
+      }
+    }
+  }
+
+  STRAINWAVE_INLINE void move_frame(const RippleOrderLayout& order, Mask lanes, L* offsets) const {
+    L steps[3];
+    for (std::size_t t = 0; t < order.terms; ++t) {
+      const std::size_t pair = order.first_pair + 1 + t;
+      steps[t] = select(lanes, offsets[t], L(Real(0)));
+      const L frame = load(memory.frames[pair]) + steps[t];
+      store(frame, memory.frames[pair]);
+      offsets[t] = select(lanes, factors[pair] - frame, offsets[t]);
+    }
+    move_row(2 * order.first_pair, order.terms, steps);
+    move_row(2 * order.first_pair + 1, order.terms, steps);
+  }
+
+  // ---- covariance, written out ------------------------------------------------------------------
+
+  template <std::size_t I, std::size_t J>
+  STRAINWAVE_INLINE void project_element(const L* seen, L* sums) const {
+    const L element = load(memory.covariance_Nm2[detail::lane_element(I, J)]);
+    sums[I] = I == 0 ? element * seen[0] : fused(element, seen[J], sums[I]);
+    if constexpr (I != J) {
+      sums[J] = fused(element, seen[I], sums[J]);
+    }
+  }
+  template <std::size_t I, std::size_t... J>
+  STRAINWAVE_INLINE void project_row(const L* seen, L* sums, std::index_sequence<J...>) const {
+    sums[I] = Real(0);
+    (project_element<I, J>(seen, sums), ...);
+  }
+  /// P h; each element is read once.
+  template <std::size_t... I>
+  STRAINWAVE_INLINE void project(std::index_sequence<I...>) {
+    const L seen[coefficients] = {h[I]...};
+    L sums[coefficients];
+    (project_row<I>(seen, sums, std::make_index_sequence<I + 1>{}), ...);
+    ((pc[I] = sums[I]), ...);
+  }
+
+  template <std::size_t I, std::size_t... J>
+  STRAINWAVE_INLINE void measure_row(L gain, const L* with, std::index_sequence<J...>) const {
+    ((store(fused_minus(gain, with[J], load(memory.covariance_Nm2[detail::lane_element(I, J)])),
+            memory.covariance_Nm2[detail::lane_element(I, J)])),
+     ...);
+  }
+  /// P - P h h'P / s.
+  template <std::size_t... I>
+  STRAINWAVE_INLINE void measure_coefficients(L per_variance, std::index_sequence<I...>) const {
+    const L with[coefficients] = {row[I]...};
+    (measure_row<I>(with[I] * per_variance, with, std::make_index_sequence<I + 1>{}), ...);
+  }
+
+  STRAINWAVE_INLINE L sum_with_h(const L* numbers) const {
+    L sums[2] = {Real(0), Real(0)};
+    for (std::size_t i = 0; i < coefficients; i += 2) {
+      sums[0] = fused(h[i], numbers[i], sums[0]);
+      sums[1] = fused(h[i + 1], numbers[i + 1], sums[1]);
+    }
+    return sums[0] + sums[1];
+  }
+
+  // ---- update -----------------------------------------------------------------------------------
+
+  /// jump_variance() of ripple_state.hpp, where the motor moves.
+  STRAINWAVE_INLINE L jump_variance(L ripple_variance_Nm2) const {
+    const L scale_Nm = load(memory.innovation_scale_Nm);
+    const L limit_Nm2 = L(static_cast<Real>(detail::robust_limit * detail::robust_limit)) *
+                        larger(scale_Nm * scale_Nm, ripple_variance_Nm2);
+    const L square_Nm2 = innovation_Nm * innovation_Nm;
+    const Mask beyond = (square_Nm2 > limit_Nm2) & moving;
+    if (!beyond.any()) {
+      return L(Real(0));
+    }
+    const L ratio = square_Nm2 / limit_Nm2;
+    const L most = Real(1e12);
+    const L excess = select(ratio < most, ratio, most) - L(Real(1));
+    return select(beyond, variance_Nm2 * excess, L(Real(0)));
+  }
+
+  /// The Kalman update of update_of().
+  STRAINWAVE_INLINE void update() {
+    const L noise_Nm2 = load(memory.noise_Nm2);
+    L torque_row_Nm2[coefficients];
+    for (std::size_t i = 0; i < coefficients; ++i) {
+      torque_row_Nm2[i] = load(memory.torque_row_Nm2[i]);
+    }
+    const L longest_s = static_cast<Real>(detail::longest_torque_walk_s);
+    const L walked_s = select(interval_s < longest_s, interval_s, longest_s);
+    const L torque_variance_Nm2 =
+        fused(load(memory.walk_Nm2_per_s), walked_s, load(memory.torque_variance_Nm2));
+    project(std::make_index_sequence<coefficients>{});
+    const L ripple_variance_Nm2 = sum_with_h(pc);
+    const L shared_Nm2 = sum_with_h(torque_row_Nm2);
+    const L with_torque_Nm2 = torque_variance_Nm2 + shared_Nm2;
+    const L rest_Nm2 = noise_Nm2 + ripple_variance_Nm2 + shared_Nm2;
+    variance_Nm2 = rest_Nm2 + with_torque_Nm2;
+    const Mask healthy = (variance_Nm2 <= L(std::numeric_limits<Real>::max())) &
+                         (variance_Nm2 > L(Real(0))) &
+                         (ripple_variance_Nm2 > L(Real(0)) - noise_Nm2);
+    const Mask reset = usual & !healthy;
+    if (reset.any()) [[unlikely]] {
+      send(reset);
+      usual = usual & healthy;
+    }
+    const L jump_Nm2 = jump_variance(ripple_variance_Nm2);
+    const L per_variance = L(Real(1)) / (variance_Nm2 + jump_Nm2);
+    const L state_Nm = load(memory.torque_state_Nm);
+    store(fused((with_torque_Nm2 + jump_Nm2) * per_variance, innovation_Nm, state_Nm),
+          memory.torque_state_Nm);
+    const L left = rest_Nm2 * per_variance;
+    store(fused_minus(left, rest_Nm2, noise_Nm2 + ripple_variance_Nm2), memory.torque_variance_Nm2);
+    for (std::size_t i = 0; i < coefficients; ++i) {
+      row[i] = pc[i] + torque_row_Nm2[i];
+      store(fused(left, row[i], L(Real(0)) - pc[i]), memory.torque_row_Nm2[i]);
+    }
+    if (moving.any()) {
+      const L learning = select(moving, per_variance, L(Real(0)));
+      measure_coefficients(learning, std::make_index_sequence<coefficients>{});
+      learn(learning * innovation_Nm);
+      track_scale();
+      walk();
+    }
+  }
+
+  /// leave_frame(), and the coefficients' part of the update.
+  STRAINWAVE_INLINE void learn(L gain_per_row) {
+    for (std::size_t a = 0; a < memory.order_count; ++a) {
+      const RippleOrderLayout& order = memory.orders[a];
+      const std::size_t b = 2 * order.first_pair;
+      for (std::size_t t = 0; t < order.terms; ++t) {
+        const L frame = load(memory.frames[order.first_pair + 1 + t]);
+        row[b] = fused_minus(frame, row[b + 2 * t + 2], row[b]);
+        row[b + 1] = fused_minus(frame, row[b + 2 * t + 3], row[b + 1]);
+      }
+    }
+    for (std::size_t i = 0; i < coefficients; ++i) {
+      store(fused(row[i], gain_per_row, load(memory.coefficients_Nm[i])),
+            memory.coefficients_Nm[i]);
+    }
+  }
+
+  /// track_scale() of ripple_state.hpp.
+  STRAINWAVE_INLINE void track_scale() const {
+    const L old_Nm = load(memory.innovation_scale_Nm);
+    const L rotation = absolute(rotation_rad);
+    const L travel_rad = select(rotation < L(Real(3)), rotation, L(Real(3)));
+    const L beyond = one_where(absolute(innovation_Nm) > old_Nm);
+    const L change = L(static_cast<Real>(detail::scale_rate_per_rad)) * travel_rad *
+                     (beyond - L(static_cast<Real>(detail::share_beyond_scale)));
+    const L scale_Nm =
+        old_Nm * fused(change, fused(L(Real(0.5)), change, L(Real(1))), L(Real(1)));
+    // Half of the noise: the square root is the configuration's own.
+    const L least_Nm = L(Real(0.5)) * square_root(load(memory.noise_Nm2));
+    store(select(moving, larger(scale_Nm, least_Nm), old_Nm), memory.innovation_scale_Nm);
+  }
+
+  // ---- process noise ----------------------------------------------------------------------------
+
+  /// let_ripple_walk() of ripple_state.hpp, without a gap.
+  STRAINWAVE_INLINE void walk() {
+    const L square_rad2 = rotation_rad * rotation_rad;
+    const L per_square = load(memory.per_memory_square);
+    const L share_all = square_rad2 * per_square;
+    const L share = select(share_all < L(Real(1)), share_all, L(Real(1)));
+    const L walk_Nm2 = L(Real(2)) * load(memory.walk_Nm2_per_s) * interval_s;
+    const L noise_Nm2 = L(Real(2)) * load(memory.noise_Nm2) * share;
+    const L walk_per_square_Nm2 =
+        select(share > L(Real(0)), walk_Nm2 * per_square, L(Real(0)));
+    const L white_Nm2 = fused(L(Real(0.25)) * walk_Nm2, share, noise_Nm2);
+    for (std::size_t a = 0; a < memory.order_count; ++a) {
+      const L order = load(memory.order[a]);
+      const L per_order = load(memory.per_order[a]);
+      const L square = (order * order) * square_rad2;
+      L bent = fused(square, L(Real(4.99873192e-07)), L(Real(1.88781908e-06)));
+      bent = fused(square, bent, L(Real(1.85362645e-04)));
+      bent = fused(square, bent, L(Real(4.12392359e-03)));
+      bent = fused(square, bent, L(Real(8.33619094e-02)));
+      bent = fused(square, bent, L(Real(1)));
+      L gained_Nm2 = fused((per_order * per_order) * walk_per_square_Nm2, bent, noise_Nm2);
+      gained_Nm2 = select(square > L(pi<Real> * pi<Real>), white_Nm2, gained_Nm2);
+      add_noise(memory.orders[a], select(moving, gained_Nm2, L(Real(0))));
+    }
+    limited = limited & moving;
+  }
+
+  STRAINWAVE_INLINE void add(std::size_t i, std::size_t j, L value_Nm2) const {
+    Real* const element = memory.covariance_Nm2[detail::lane_element(i, j)];
+    store(load(element) + value_Nm2, element);
+  }
+  STRAINWAVE_INLINE Mask is_beyond(std::size_t i, L limit_Nm2) const {
+    return load(memory.covariance_Nm2[detail::lane_element(i, i)]) +
+               load(memory.covariance_Nm2[detail::lane_element(i + 1, i + 1)]) >
+           L(Real(2)) * limit_Nm2;
+  }
+
+  /// add_noise() of ripple_covariance.hpp.
+  STRAINWAVE_INLINE void add_noise(const RippleOrderLayout& order, L each_Nm2) {
+    const std::size_t b = 2 * order.first_pair;
+    const L limit_Nm2 = load(memory.limit_Nm2);
+    if (order.terms > 0) {
+      L weight = Real(1);
+      for (std::size_t t = 0; t < order.terms; ++t) {
+        const L factor = factors[order.first_pair + 1 + t];
+        weight = fused(factor, factor, weight);
+      }
+      each_Nm2 = each_Nm2 / weight;
+    }
+    L weight = Real(1);
+    L sum_Nm2 = Real(0);
+    for (std::size_t t = 0; t < order.terms; ++t) {
+      const std::size_t i = b + 2 * (t + 1);
+      const L factor = load(memory.frames[order.first_pair + 1 + t]);
+      weight = fused(factor, factor, weight);
+      const Mask beyond = is_beyond(i, limit_Nm2);
+      limited = limited | beyond;
+      const L its_Nm2 = select(beyond, L(Real(0)), each_Nm2);
+      const L with_first_Nm2 = factor * its_Nm2;
+      add(i, b, with_first_Nm2);
+      add(i + 1, b + 1, with_first_Nm2);
+      add(i, i, its_Nm2);
+      add(i + 1, i + 1, its_Nm2);
+      sum_Nm2 = fused(factor, with_first_Nm2, sum_Nm2);
+    }
+    const Mask beyond = is_beyond(b, weight * limit_Nm2);
+    limited = limited | beyond;
+    sum_Nm2 = sum_Nm2 + select(beyond, L(Real(0)), each_Nm2);
+    add(b, b, sum_Nm2);
+    add(b + 1, b + 1, sum_Nm2);
+  }
+
+  // ---- end --------------------------------------------------------------------------------------
+
+  /// finish_learning() of ripple_sample.hpp, and what the sample leaves behind.
+  STRAINWAVE_INLINE void finish() const {
+    store_whole<Real>(turns, memory.last_turns + lane);
+    store_whole<Real>(fraction, memory.last_fraction + lane);
+    store(speed_rad_s, memory.speed_rad_s);
+    store(smoothed_speed_rad_s, memory.smoothed_speed_rad_s);
+    store(torque_Nm, memory.measured_Nm);
+    store(clean_Nm, memory.torque_Nm);
+    store(all_removed_Nm, memory.torque_all_Nm);
+    const L load_Nm = load(memory.load_Nm);
+    store(fused(load(memory.load_share), all_removed_Nm - load_Nm, load_Nm), memory.load_Nm);
+    const L typical_s = load(memory.typical_interval_s);
+    store(fused(interval_s - typical_s, L(Real(1) / Real(64)), typical_s),
+          memory.typical_interval_s);
+  }
+
+  STRAINWAVE_INLINE void raise(Mask raised, std::size_t flag, L& status) const {
+    const L one = one_where(raised & usual);
+    store(load(memory.counts[flag]) + one, memory.counts[flag]);
+    status = status + one * L(static_cast<Real>(mask(ripple_lane_flags[flag])));
+  }
+
+  STRAINWAVE_INLINE void put(RippleOutput output, L value) const {
+    Real* const values = tile.outputs[static_cast<std::size_t>(output)];
+    if (values != nullptr) {
+      value.store(values + k * block_width<Real> + lane);
+    }
+  }
+
+  STRAINWAVE_INLINE void put_all() const {
+    put(RippleOutput::torque, clean_Nm);
+    put(RippleOutput::ripple, ripple_Nm);
+    put(RippleOutput::all_removed, all_removed_Nm);
+    put(RippleOutput::state, load(memory.torque_state_Nm) + expected_Nm);
+    put(RippleOutput::innovation, innovation_Nm);
+    put(RippleOutput::variance, variance_Nm2);
+    L status = Real(0);
+    if ((((!moving) | above_nyquist | limited) & usual).any()) {
+      raise(!moving, 0, status);
+      raise(above_nyquist, 1, status);
+      raise(limited, 2, status);
+      memory.any_count = true;
+    }
+    if (tile.status != nullptr) {
+      status.store(tile.status + k * block_width<Real> + lane);
+    }
+  }
+
+  STRAINWAVE_INLINE void filter() {
+    take_sample();
+    take_phase();
+    const Mask live = load(memory.live) > L(Real(0));
+    const Mask unusual = live & !usual;
+    if (unusual.any()) [[unlikely]] {
+      send(unusual);
+      if (!usual.any()) {
+        alone.come_back(alone.block, lane, L::count, k);
+        return;
+      }
+    }
+    if (memory.any_own_angle) {
+      find_own_angles();
+    }
+    find_waves();
+    find_factors();
+    remove_ripple();
+    innovation_Nm = all_removed_Nm - expected_Nm - load(memory.torque_state_Nm);
+    limited = none();
+    enter_frame();
+    update();
+    finish();
+    put_all();
+    const Mask left = live & !usual;
+    if (left.any()) [[unlikely]] {
+      store(one_where(left), memory.alone);
+      alone.come_back(alone.block, lane, L::count, k);
+    }
+  }
+};
+
+/// A tile through all lanes of a block.
+template <class Real, std::size_t Pairs>
+inline void filter_ripple_tile(RippleLanes<Real, Pairs>& memory, const RippleTile<Real>& tile,
+                               const RippleAlone& alone) {
+  using Group = RippleGroup<Real, Pairs>;
+  for (std::size_t lane = 0; lane < block_width<Real>; lane += Lanes<Real>::count) {
+    for (std::size_t k = 0; k < tile.sample_count; ++k) {
+      Group(memory, tile, alone, lane, k).filter();
+    }
+  }
+}
+
+#undef STRAINWAVE_INLINE

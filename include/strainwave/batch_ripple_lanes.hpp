@@ -1,0 +1,282 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file batch_ripple_lanes.hpp
+/// A block of ripple filters side by side: configuration and state, a row of lanes for each number.
+///
+/// Lanes hold the filters that go on from sample to sample as usual.  What is rare (the start, a
+/// missing angle, a late row, a gap) a lane does alone, through step(), and then comes back.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+
+#include "strainwave/batch_layout.hpp"
+#include "strainwave/ripple_filter.hpp"
+
+namespace strainwave {
+
+/// What a further pair is multiplied by.
+enum class RippleFactor : std::uint8_t { load, speed, direction };
+
+/// An order of a block, alike in all of its lanes but for the order itself.
+struct RippleOrderLayout {
+  std::size_t first_pair = 0;
+  std::size_t terms = 0;  ///< further pairs
+  RippleFactor factors[3] = {};
+  bool in_series = false;  ///< the sum of the order before it and the first one, in every lane
+
+  [[nodiscard]] constexpr auto operator<=>(const RippleOrderLayout&) const = default;
+};
+
+/// Everything that changes from lane to lane is a row.  Pairs that the filters do not have are
+/// rows of zeros.
+template <class Real, std::size_t Pairs>
+struct alignas(64) RippleLanes {
+  static constexpr std::size_t width = block_width<Real>;
+  static constexpr std::size_t coefficients = 2 * Pairs;
+  using Row = Real[width];
+  using Whole = std::conditional_t<sizeof(Real) == 4, std::int32_t, std::int64_t>;
+  using WholeRow = Whole[width];
+
+  // Configuration.
+  Row order[Pairs];
+  Row per_order[Pairs];
+  WholeRow numerator[Pairs];
+  Row kept[Pairs];  ///< 1 for an order that stays in the torque
+  Row noise_Nm2;    ///< R
+  Row walk_Nm2_per_s;
+  Row limit_Nm2;
+  Row per_rated_torque;
+  Row per_reference_speed;
+  Row per_memory_square;  ///< 1 / (2 pi n)^2
+  Row minimum_speed_rad_s;
+  Row highest_order;
+
+  // State.
+  Row torque_state_Nm;
+  Row coefficients_Nm[coefficients];
+  Row frames[Pairs];  ///< factor of each further pair
+  Row covariance_Nm2[coefficients * (coefficients + 1) / 2];
+  Row torque_row_Nm2[coefficients];
+  Row torque_variance_Nm2;
+  Row innovation_scale_Nm;
+  WholeRow last_turns;     ///< the nearest whole ones
+  WholeRow last_fraction;  ///< from there, in units of 2^-32 turn, either side of zero
+  Row speed_rad_s;
+  Row smoothed_speed_rad_s;
+  Row load_Nm;
+  Row typical_interval_s;
+  Row measured_Nm;
+  Row torque_Nm;
+  Row torque_all_Nm;
+
+  // Of the interval, which seldom changes.
+  Row interval_s;
+  Row per_interval;
+  Row speed_share;
+  Row smoothed_speed_share;
+  Row load_share;
+
+  Row in_step;  ///< 1: the state is here; 0: with the channel, whose next sample is done alone
+  Row live;     ///< 1: a channel that has not ended
+  Row alone;    ///< 1: this sample is done alone
+  // Of lanes that find their angles alone: those with a delay, fractions of orders or frozen terms.
+  Row new_speed_rad_s;
+  Row rotation_rad;  ///< since the last sample; then, since what was learned last
+  WholeRow order_fraction[Pairs];
+  Row frozen_Nm;
+
+  /// How often each flag of ripple_lane_flags was raised since the counts were taken.
+  Row counts[3];
+
+  RippleOrderLayout orders[Pairs];
+  std::size_t order_count = 0;
+  std::size_t pair_count = 0;
+  bool any_kept = false;
+  bool any_own_angle = false;
+  bool any_count = false;
+};
+
+/// Flags that lanes raise without step().
+inline constexpr StatusFlag ripple_lane_flags[3] = {
+    StatusFlag::at_rest, StatusFlag::order_above_nyquist, StatusFlag::variance_limited};
+
+/// What may be asked of a filter sample by sample.
+enum class RippleOutput : std::uint8_t { torque, ripple, all_removed, state, innovation, variance };
+inline constexpr std::size_t ripple_outputs = 6;
+
+/// Samples of a block, [time][block_width]; null outputs are not wanted.
+template <class Real>
+struct RippleTile {
+  const Real* measured_torque_Nm = nullptr;
+  const Real* turns = nullptr;     ///< bits of whole numbers, see RippleLanes::last_turns
+  const Real* fraction = nullptr;  ///< likewise
+  const Real* interval_s = nullptr;
+  std::size_t interval_stride = block_width<Real>;
+  const Real* expected_torque_Nm = nullptr;
+  std::size_t expected_stride = block_width<Real>;
+  Real* outputs[ripple_outputs] = {};
+  Real* status = nullptr;  ///< as numbers, which hold them exactly
+  std::size_t sample_count = 0;
+};
+
+/// What lanes cannot do: called with the first lane of a group, how many they
+/// are, and the sample of the tile.
+struct RippleAlone {
+  void* block = nullptr;
+  /// Lanes that RippleLanes::alone marks take their states with them and do the sample.
+  void (*leave)(void* block, std::size_t lane, std::size_t lanes, std::size_t sample) = nullptr;
+  /// They come back with the results.
+  void (*come_back)(void* block, std::size_t lane, std::size_t lanes, std::size_t sample) = nullptr;
+  /// Lanes with angles of their own find them.
+  void (*find_angles)(void* block, std::size_t lane, std::size_t lanes, std::size_t sample) = nullptr;
+};
+
+namespace detail {
+
+[[nodiscard]] constexpr std::size_t lane_element(std::size_t row, std::size_t column) {
+  return row >= column ? row * (row + 1) / 2 + column : column * (column + 1) / 2 + row;
+}
+
+/// Turns beyond this a lane does alone.
+inline constexpr std::int64_t most_lane_turns = std::int64_t{1} << 30U;
+
+/// The nearest whole turns.
+[[nodiscard]] constexpr std::int64_t nearest_turns(Phase phase) {
+  return phase.turns + (phase.fraction >= 0x80000000U ? 1 : 0);
+}
+template <class Whole>
+[[nodiscard]] constexpr Phase phase_of_lane(Whole turns, Whole fraction) {
+  return {turns - (fraction < 0 ? 1 : 0), static_cast<std::uint32_t>(fraction)};
+}
+
+/// Whether a filter finds its angles alone.
+template <class Real, std::size_t MaxPairs>
+[[nodiscard]] constexpr bool has_own_angle(const RippleFilterConfig<Real, MaxPairs>& config) {
+  bool own = config.angle_to_torque_delay_s != Real(0) || config.frozen_count > 0;
+  for (std::size_t a = 0; a < config.order_count; ++a) {
+    own = own || config.orders[a].order.denominator != 1;
+  }
+  return own;
+}
+
+/// Whether the next sample finds everything as it is after a usual one.
+template <class Real, std::size_t MaxPairs>
+[[nodiscard]] constexpr bool is_in_step(const RippleFilterConfig<Real, MaxPairs>& config,
+                                        const RippleFilterState<Real, MaxPairs>& state) {
+  const std::int64_t turns = nearest_turns(state.last_phase);
+  const bool alike =
+      has_own_angle(config) || state.learned_phase == state.last_phase;
+  return state.phase_known && state.torque_known && state.learned_phase_known && alike &&
+         state.time_since_phase_s <= Real(0) && state.time_since_update_s <= Real(0) &&
+         state.typical_interval_s > Real(0) && reaches_back(config, state) &&
+         turns > -most_lane_turns && turns < most_lane_turns;
+}
+
+/// One lane's configuration.
+template <class Real, std::size_t Pairs, std::size_t MaxPairs>
+inline void put_config(RippleLanes<Real, Pairs>& lanes, std::size_t lane,
+                       const RippleFilterConfig<Real, MaxPairs>& config) {
+  for (std::size_t a = 0; a < config.order_count; ++a) {
+    const Order order = config.orders[a].order;
+    lanes.order[a][lane] = to_real<Real>(order);
+    lanes.per_order[a][lane] = Real(1) / to_real<Real>(order);
+    lanes.numerator[a][lane] =
+        static_cast<typename RippleLanes<Real, Pairs>::Whole>(order.numerator);
+    lanes.kept[a][lane] = config.orders[a].keep ? Real(1) : Real(0);
+    lanes.any_kept = lanes.any_kept || config.orders[a].keep;
+  }
+  const Real per_memory_rad = Real(1) / (two_pi<Real> * config.memory_turns);
+  lanes.noise_Nm2[lane] = config.torque_noise_Nm * config.torque_noise_Nm;
+  lanes.walk_Nm2_per_s[lane] = config.torque_walk_Nm_per_sqrt_s * config.torque_walk_Nm_per_sqrt_s;
+  lanes.limit_Nm2[lane] = config.initial_amplitude_Nm * config.initial_amplitude_Nm;
+  lanes.per_rated_torque[lane] = Real(1) / config.rated_torque_Nm;
+  lanes.per_reference_speed[lane] = Real(1) / config.reference_speed_rad_s;
+  lanes.per_memory_square[lane] = per_memory_rad * per_memory_rad;
+  lanes.minimum_speed_rad_s[lane] = config.minimum_speed_rad_s;
+  lanes.highest_order[lane] = highest_order(config);
+  lanes.any_own_angle = lanes.any_own_angle || has_own_angle(config);
+}
+
+/// One lane's state, where the next sample may be a usual one.
+template <class Real, std::size_t Pairs, std::size_t MaxPairs>
+inline void put_state(RippleLanes<Real, Pairs>& lanes, std::size_t lane,
+                      const RippleFilterConfig<Real, MaxPairs>& config,
+                      const RippleFilterState<Real, MaxPairs>& state) {
+  using Whole = typename RippleLanes<Real, Pairs>::Whole;
+  lanes.in_step[lane] = is_in_step(config, state) ? Real(1) : Real(0);
+  if (lanes.in_step[lane] <= Real(0)) {
+    return;
+  }
+  const std::size_t count = 2 * pair_count(config);
+  const auto& p = state.covariance;
+  for (std::size_t i = 0; i < count; ++i) {
+    lanes.coefficients_Nm[i][lane] = state.states_Nm[i + 1];
+    lanes.torque_row_Nm2[i][lane] = p.torque_row_Nm2[i];
+    for (std::size_t j = 0; j <= i; ++j) {
+      lanes.covariance_Nm2[lane_element(i, j)][lane] = element_of(p, i, j);
+    }
+  }
+  for (std::size_t a = 0; a < lanes.order_count; ++a) {
+    for (std::size_t t = 0; t < lanes.orders[a].terms; ++t) {
+      lanes.frames[lanes.orders[a].first_pair + 1 + t][lane] = p.frames[a][t];
+    }
+  }
+  lanes.torque_state_Nm[lane] = state.states_Nm[0];
+  lanes.torque_variance_Nm2[lane] = p.torque_variance_Nm2;
+  lanes.innovation_scale_Nm[lane] = state.innovation_scale_Nm;
+  lanes.last_turns[lane] = static_cast<Whole>(nearest_turns(state.last_phase));
+  lanes.last_fraction[lane] = static_cast<std::int32_t>(state.last_phase.fraction);
+  lanes.speed_rad_s[lane] = state.speed_rad_s;
+  lanes.smoothed_speed_rad_s[lane] = state.smoothed_speed_rad_s;
+  lanes.load_Nm[lane] = state.load_Nm;
+  lanes.typical_interval_s[lane] = state.typical_interval_s;
+  lanes.measured_Nm[lane] = state.measured_Nm;
+  lanes.torque_Nm[lane] = state.torque_Nm;
+  lanes.torque_all_Nm[lane] = state.torque_all_Nm;
+}
+
+/// The way back, of a lane that is in step; the counters, and the angles of lanes that find their
+/// own, have stayed with the state.
+template <class Real, std::size_t Pairs, std::size_t MaxPairs>
+inline void take_state(const RippleLanes<Real, Pairs>& lanes, std::size_t lane,
+                       const RippleFilterConfig<Real, MaxPairs>& config,
+                       RippleFilterState<Real, MaxPairs>& state) {
+  if (lanes.in_step[lane] <= Real(0)) {
+    return;
+  }
+  const std::size_t count = 2 * pair_count(config);
+  auto& p = state.covariance;
+  for (std::size_t i = 0; i < count; ++i) {
+    state.states_Nm[i + 1] = lanes.coefficients_Nm[i][lane];
+    p.torque_row_Nm2[i] = lanes.torque_row_Nm2[i][lane];
+    for (std::size_t j = 0; j <= i; ++j) {
+      set_element(p, i, j, lanes.covariance_Nm2[lane_element(i, j)][lane]);
+    }
+  }
+  for (std::size_t a = 0; a < lanes.order_count; ++a) {
+    for (std::size_t t = 0; t < lanes.orders[a].terms; ++t) {
+      p.frames[a][t] = lanes.frames[lanes.orders[a].first_pair + 1 + t][lane];
+    }
+  }
+  state.states_Nm[0] = lanes.torque_state_Nm[lane];
+  p.torque_variance_Nm2 = lanes.torque_variance_Nm2[lane];
+  state.innovation_scale_Nm = lanes.innovation_scale_Nm[lane];
+  state.last_phase = phase_of_lane(lanes.last_turns[lane], lanes.last_fraction[lane]);
+  if (!has_own_angle(config)) {
+    state.learned_phase = state.last_phase;
+  }
+  state.time_since_phase_s = Real(0);
+  state.time_since_update_s = Real(0);
+  state.speed_rad_s = lanes.speed_rad_s[lane];
+  state.smoothed_speed_rad_s = lanes.smoothed_speed_rad_s[lane];
+  state.load_Nm = lanes.load_Nm[lane];
+  state.typical_interval_s = lanes.typical_interval_s[lane];
+  state.measured_Nm = lanes.measured_Nm[lane];
+  state.torque_Nm = lanes.torque_Nm[lane];
+  state.torque_all_Nm = lanes.torque_all_Nm[lane];
+}
+
+}  // namespace detail
+
+}  // namespace strainwave
