@@ -184,11 +184,7 @@ class RippleBlockRun {
   RippleBlockRun(const Block& block, const RippleKind& kind,
                  const RippleKernel<Real, Pairs>& kernel)
       : block_(block), kernel_(kernel) {
-    lanes_.order_count = kind.order_count;
-    for (std::size_t a = 0; a < kind.order_count; ++a) {
-      lanes_.orders[a] = kind.orders[a];
-      lanes_.pair_count += 1 + kind.orders[a].terms;
-    }
+    put_layout(lanes_, kind.orders, kind.order_count);
     for (std::size_t lane = 0; lane < width; ++lane) {
       if (block.configs[lane] == nullptr) {
         continue;

@@ -135,11 +135,10 @@ struct RippleGroup {
   Mask above_nyquist;
   Mask limited;
 
-  L cosines[Pairs];
+  L cosines[Pairs];  ///< of each order
   L sines[Pairs];
-  L factors[Pairs];
+  L factors[ripple_factors];
   L h[coefficients];
-  L pc[coefficients];
   L row[coefficients];
 
   L ripple_Nm;
@@ -147,6 +146,9 @@ struct RippleGroup {
   L all_removed_Nm;
   L innovation_Nm;
   L variance_Nm2;
+
+  static constexpr auto by_pair = std::make_index_sequence<Pairs>{};
+  static constexpr auto by_coefficient = std::make_index_sequence<coefficients>{};
 
   STRAINWAVE_INLINE RippleGroup(Memory& memory_of, const RippleTile<Real>& tile_of,
                                 const RippleAlone& alone_of, std::size_t lane_of,
@@ -262,46 +264,102 @@ struct RippleGroup {
   STRAINWAVE_INLINE void find_factors() {
     const L load_ratio = load(memory.load_Nm) * load(memory.per_rated_torque);
     const L speed = absolute(speed_rad_s);
-    L by_kind[3];
-    by_kind[0] = load_ratio / (L(Real(1)) + absolute(load_ratio));
-    by_kind[1] = speed * load(memory.per_reference_speed);
-    by_kind[2] = speed_rad_s / (speed + L(Real(1)));
-    for (std::size_t a = 0; a < memory.order_count; ++a) {
-      const RippleOrderLayout& order = memory.orders[a];
-      for (std::size_t t = 0; t < order.terms; ++t) {
-        factors[order.first_pair + 1 + t] = by_kind[static_cast<std::size_t>(order.factors[t])];
-      }
-    }
+    factors[0] = Real(1);
+    factors[1] = load_ratio / (L(Real(1)) + absolute(load_ratio));
+    factors[2] = speed * load(memory.per_reference_speed);
+    factors[3] = memory.any_direction ? speed_rad_s / (speed + L(Real(1))) : L(Real(0));
+    factors[4] = Real(0);
+  }
+
+  template <std::size_t P>
+  STRAINWAVE_INLINE L wave_of_pair() const {
+    const std::size_t a = memory.order_of[P];
+    const L wave_Nm = fused(cosines[a], load(memory.coefficients_Nm[2 * P]),
+                            sines[a] * load(memory.coefficients_Nm[2 * P + 1]));
+    return factors[memory.factor_of[P]] * wave_Nm;
+  }
+  template <std::size_t P>
+  STRAINWAVE_INLINE L kept_of_pair() const {
+    return load(memory.kept[memory.order_of[P]]) * wave_of_pair<P>();
+  }
+  template <std::size_t... P>
+  STRAINWAVE_INLINE L ripple_of_all(std::index_sequence<P...>) const {
+    return (wave_of_pair<P>() + ...);
+  }
+  template <std::size_t... P>
+  STRAINWAVE_INLINE L ripple_of_kept(std::index_sequence<P...>) const {
+    return (kept_of_pair<P>() + ...);
   }
 
   /// The ripple that is removed, and torque without it and without any.
   STRAINWAVE_INLINE void remove_ripple() {
-    L removed_Nm = Real(0);
-    L kept_Nm = Real(0);
-    for (std::size_t a = 0; a < memory.order_count; ++a) {
-      const RippleOrderLayout& order = memory.orders[a];
-      const std::size_t b = 2 * order.first_pair;
-      L cosine_Nm = load(memory.coefficients_Nm[b]);
-      L sine_Nm = load(memory.coefficients_Nm[b + 1]);
-      for (std::size_t t = 0; t < order.terms; ++t) {
-        const L factor = factors[order.first_pair + 1 + t];
-        cosine_Nm = fused(factor, load(memory.coefficients_Nm[b + 2 * t + 2]), cosine_Nm);
-        sine_Nm = fused(factor, load(memory.coefficients_Nm[b + 2 * t + 3]), sine_Nm);
-      }
-      const L wave_Nm = fused(cosines[a], cosine_Nm, sines[a] * sine_Nm);
-      const L kept = memory.any_kept ? load(memory.kept[a]) : L(Real(0));
-      kept_Nm = fused(kept, wave_Nm, kept_Nm);
-      removed_Nm = fused(L(Real(1)) - kept, wave_Nm, removed_Nm);
-    }
+    const L all_Nm = ripple_of_all(by_pair);
+    const L kept_Nm = memory.any_kept ? ripple_of_kept(by_pair) : L(Real(0));
+    ripple_Nm = all_Nm - kept_Nm;
     if (memory.any_own_angle) {
-      removed_Nm = removed_Nm + load(memory.frozen_Nm);
+      ripple_Nm = ripple_Nm + load(memory.frozen_Nm);
     }
-    ripple_Nm = removed_Nm;
-    clean_Nm = torque_Nm - removed_Nm;
+    clean_Nm = torque_Nm - ripple_Nm;
     all_removed_Nm = clean_Nm - kept_Nm;
   }
 
   // ---- frame ------------------------------------------------------------------------------------
+
+  template <std::size_t P>
+  STRAINWAVE_INLINE L offset() const {
+    return factors[memory.factor_of[P]] - load(memory.frames[P]);
+  }
+  template <std::size_t P>
+  STRAINWAVE_INLINE Mask is_too_far() const {
+    return absolute(offset<P>()) > L(memory.widest_offset[P]);
+  }
+  template <std::size_t... P>
+  STRAINWAVE_INLINE Mask is_any_too_far(std::index_sequence<P...>) const {
+    return (is_too_far<P>() | ...);
+  }
+  template <std::size_t P>
+  STRAINWAVE_INLINE void enter_pair() {
+    const L factor = offset<P>();
+    h[2 * P] = factor * cosines[memory.order_of[P]];
+    h[2 * P + 1] = factor * sines[memory.order_of[P]];
+  }
+  template <std::size_t... P>
+  STRAINWAVE_INLINE void enter_pairs(std::index_sequence<P...>) {
+    (enter_pair<P>(), ...);
+  }
+
+  /// follow() and enter_frame() of ripple_covariance.hpp.
+  STRAINWAVE_INLINE void enter_frame() {
+    if ((is_any_too_far(by_pair) & usual).any()) [[unlikely]] {
+      follow();
+    }
+    enter_pairs(by_pair);
+  }
+
+  /// Where one lane has to move, all others of the order move along: that costs nothing, and one
+  /// after the other they would move at every few samples.
+  STRAINWAVE_INLINE void follow() const {
+    for (std::size_t a = 0; a < memory.order_count; ++a) {
+      const RippleOrderLayout& order = memory.orders[a];
+      L steps[3];
+      Mask too_far = none();
+      for (std::size_t t = 0; t < order.terms; ++t) {
+        const std::size_t pair = order.first_pair + 1 + t;
+        const L step = factors[memory.factor_of[pair]] - load(memory.frames[pair]);
+        too_far = too_far | (absolute(step) > L(memory.widest_offset[pair]));
+        steps[t] = select(usual, step, L(Real(0)));
+      }
+      if ((too_far & usual).any()) {
+        for (std::size_t t = 0; t < order.terms; ++t) {
+          Real* const frame = memory.frames[order.first_pair + 1 + t];
+          store(load(frame) + steps[t], frame);
+        }
+        move_row(2 * order.first_pair, order.terms, steps);
+        move_row(2 * order.first_pair + 1, order.terms, steps);
+        return;
+      }
+    }
+  }
 
   /// move_row() of ripple_covariance.hpp.
   STRAINWAVE_INLINE void move_row(std::size_t b, std::size_t terms, const L* steps) const {
@@ -326,50 +384,6 @@ struct RippleGroup {
     store(torque, memory.torque_row_Nm2[b]);
   }
 
-  /// follow() and enter_frame() of ripple_covariance.hpp.
-  STRAINWAVE_INLINE void enter_frame() {
-    Mask free = usual;
-    for (std::size_t i = 2 * memory.pair_count; i < coefficients; ++i) {
-      h[i] = Real(0);
-    }
-    for (std::size_t a = 0; a < memory.order_count; ++a) {
-      const RippleOrderLayout& order = memory.orders[a];
-      const std::size_t b = 2 * order.first_pair;
-      L offsets[3];
-      Mask too_far = none();
-      for (std::size_t t = 0; t < order.terms; ++t) {
-        const std::size_t pair = order.first_pair + 1 + t;
-        offsets[t] = factors[pair] - load(memory.frames[pair]);
-        too_far = too_far |
-                  (absolute(offsets[t]) > L(static_cast<Real>(detail::widest_frame_offset)));
-      }
-      too_far = too_far & free;
-      if (too_far.any()) [[unlikely]] {
-        move_frame(order, too_far, offsets);
-        free = free & !too_far;
-      }
-      h[b] = cosines[a];
-      h[b + 1] = sines[a];
-      for (std::size_t t = 0; t < order.terms; ++t) {
-        h[b + 2 * t + 2] = offsets[t] * cosines[a];
-        h[b + 2 * t + 3] = offsets[t] * sines[a];
-      }
-    }
-  }
-
-  STRAINWAVE_INLINE void move_frame(const RippleOrderLayout& order, Mask lanes, L* offsets) const {
-    L steps[3];
-    for (std::size_t t = 0; t < order.terms; ++t) {
-      const std::size_t pair = order.first_pair + 1 + t;
-      steps[t] = select(lanes, offsets[t], L(Real(0)));
-      const L frame = load(memory.frames[pair]) + steps[t];
-      store(frame, memory.frames[pair]);
-      offsets[t] = select(lanes, factors[pair] - frame, offsets[t]);
-    }
-    move_row(2 * order.first_pair, order.terms, steps);
-    move_row(2 * order.first_pair + 1, order.terms, steps);
-  }
-
   // ---- covariance, written out ------------------------------------------------------------------
 
   template <std::size_t I, std::size_t J>
@@ -387,11 +401,11 @@ struct RippleGroup {
   }
   /// P h; each element is read once.
   template <std::size_t... I>
-  STRAINWAVE_INLINE void project(std::index_sequence<I...>) {
+  STRAINWAVE_INLINE void project(L* projected, std::index_sequence<I...>) const {
     const L seen[coefficients] = {h[I]...};
     L sums[coefficients];
     (project_row<I>(seen, sums, std::make_index_sequence<I + 1>{}), ...);
-    ((pc[I] = sums[I]), ...);
+    ((projected[I] = sums[I]), ...);
   }
 
   template <std::size_t I, std::size_t... J>
@@ -407,13 +421,26 @@ struct RippleGroup {
     (measure_row<I>(with[I] * per_variance, with, std::make_index_sequence<I + 1>{}), ...);
   }
 
-  STRAINWAVE_INLINE L sum_with_h(const L* numbers) const {
-    L sums[2] = {Real(0), Real(0)};
-    for (std::size_t i = 0; i < coefficients; i += 2) {
-      sums[0] = fused(h[i], numbers[i], sums[0]);
-      sums[1] = fused(h[i + 1], numbers[i + 1], sums[1]);
-    }
-    return sums[0] + sums[1];
+  template <std::size_t... P>
+  STRAINWAVE_INLINE L sum_with_h(const L* numbers, std::index_sequence<P...>) const {
+    L sums[4] = {Real(0), Real(0), Real(0), Real(0)};
+    ((sums[2 * P % 4] = fused(h[2 * P], numbers[2 * P], sums[2 * P % 4]),
+      sums[(2 * P + 1) % 4] = fused(h[2 * P + 1], numbers[2 * P + 1], sums[(2 * P + 1) % 4])),
+     ...);
+    return (sums[0] + sums[1]) + (sums[2] + sums[3]);
+  }
+
+  template <std::size_t... I>
+  STRAINWAVE_INLINE void load_torque_row(L* torque, std::index_sequence<I...>) const {
+    ((torque[I] = load(memory.torque_row_Nm2[I])), ...);
+  }
+  /// T's row after the measurement, see measure_torque(); puts P h with T into `row`.
+  template <std::size_t... I>
+  STRAINWAVE_INLINE void measure_torque(L left, const L* ripple, const L* torque,
+                                        std::index_sequence<I...>) {
+    ((row[I] = ripple[I] + torque[I],
+      store(fused(left, row[I], L(Real(0)) - ripple[I]), memory.torque_row_Nm2[I])),
+     ...);
   }
 
   // ---- update -----------------------------------------------------------------------------------
@@ -438,16 +465,15 @@ struct RippleGroup {
   STRAINWAVE_INLINE void update() {
     const L noise_Nm2 = load(memory.noise_Nm2);
     L torque_row_Nm2[coefficients];
-    for (std::size_t i = 0; i < coefficients; ++i) {
-      torque_row_Nm2[i] = load(memory.torque_row_Nm2[i]);
-    }
+    load_torque_row(torque_row_Nm2, by_coefficient);
     const L longest_s = static_cast<Real>(detail::longest_torque_walk_s);
     const L walked_s = select(interval_s < longest_s, interval_s, longest_s);
     const L torque_variance_Nm2 =
         fused(load(memory.walk_Nm2_per_s), walked_s, load(memory.torque_variance_Nm2));
-    project(std::make_index_sequence<coefficients>{});
-    const L ripple_variance_Nm2 = sum_with_h(pc);
-    const L shared_Nm2 = sum_with_h(torque_row_Nm2);
+    L projected_Nm2[coefficients];
+    project(projected_Nm2, by_coefficient);
+    const L ripple_variance_Nm2 = sum_with_h(projected_Nm2, by_pair);
+    const L shared_Nm2 = sum_with_h(torque_row_Nm2, by_pair);
     const L with_torque_Nm2 = torque_variance_Nm2 + shared_Nm2;
     const L rest_Nm2 = noise_Nm2 + ripple_variance_Nm2 + shared_Nm2;
     variance_Nm2 = rest_Nm2 + with_torque_Nm2;
@@ -466,34 +492,35 @@ struct RippleGroup {
           memory.torque_state_Nm);
     const L left = rest_Nm2 * per_variance;
     store(fused_minus(left, rest_Nm2, noise_Nm2 + ripple_variance_Nm2), memory.torque_variance_Nm2);
-    for (std::size_t i = 0; i < coefficients; ++i) {
-      row[i] = pc[i] + torque_row_Nm2[i];
-      store(fused(left, row[i], L(Real(0)) - pc[i]), memory.torque_row_Nm2[i]);
-    }
+    measure_torque(left, projected_Nm2, torque_row_Nm2, by_coefficient);
     if (moving.any()) {
       const L learning = select(moving, per_variance, L(Real(0)));
-      measure_coefficients(learning, std::make_index_sequence<coefficients>{});
-      learn(learning * innovation_Nm);
+      measure_coefficients(learning, by_coefficient);
+      learn(learning * innovation_Nm, by_pair);
       track_scale();
       walk();
     }
   }
 
   /// leave_frame(), and the coefficients' part of the update.
-  STRAINWAVE_INLINE void learn(L gain_per_row) {
-    for (std::size_t a = 0; a < memory.order_count; ++a) {
-      const RippleOrderLayout& order = memory.orders[a];
-      const std::size_t b = 2 * order.first_pair;
-      for (std::size_t t = 0; t < order.terms; ++t) {
-        const L frame = load(memory.frames[order.first_pair + 1 + t]);
-        row[b] = fused_minus(frame, row[b + 2 * t + 2], row[b]);
-        row[b + 1] = fused_minus(frame, row[b + 2 * t + 3], row[b + 1]);
-      }
+  template <std::size_t P>
+  STRAINWAVE_INLINE void learn_pair(L gain_per_row) const {
+    const L cosine_Nm = row[2 * P] * gain_per_row;
+    const L sine_Nm = row[2 * P + 1] * gain_per_row;
+    add_to(memory.coefficients_Nm[2 * P], cosine_Nm);
+    add_to(memory.coefficients_Nm[2 * P + 1], sine_Nm);
+    if (const std::size_t first = memory.first_of[P]; first != P) {
+      const L frame = L(Real(0)) - load(memory.frames[P]);
+      add_to(memory.coefficients_Nm[2 * first], frame * cosine_Nm);
+      add_to(memory.coefficients_Nm[2 * first + 1], frame * sine_Nm);
     }
-    for (std::size_t i = 0; i < coefficients; ++i) {
-      store(fused(row[i], gain_per_row, load(memory.coefficients_Nm[i])),
-            memory.coefficients_Nm[i]);
-    }
+  }
+  template <std::size_t... P>
+  STRAINWAVE_INLINE void learn(L gain_per_row, std::index_sequence<P...>) const {
+    (learn_pair<P>(gain_per_row), ...);
+  }
+  STRAINWAVE_INLINE void add_to(Real* numbers, L value) const {
+    store(load(numbers) + value, numbers);
   }
 
   /// track_scale() of ripple_state.hpp.
@@ -506,9 +533,8 @@ struct RippleGroup {
                      (beyond - L(static_cast<Real>(detail::share_beyond_scale)));
     const L scale_Nm =
         old_Nm * fused(change, fused(L(Real(0.5)), change, L(Real(1))), L(Real(1)));
-    // Half of the noise: the square root is the configuration's own.
-    const L least_Nm = L(Real(0.5)) * square_root(load(memory.noise_Nm2));
-    store(select(moving, larger(scale_Nm, least_Nm), old_Nm), memory.innovation_scale_Nm);
+    store(select(moving, larger(scale_Nm, load(memory.least_scale_Nm)), old_Nm),
+          memory.innovation_scale_Nm);
   }
 
   // ---- process noise ----------------------------------------------------------------------------
@@ -541,8 +567,7 @@ struct RippleGroup {
   }
 
   STRAINWAVE_INLINE void add(std::size_t i, std::size_t j, L value_Nm2) const {
-    Real* const element = memory.covariance_Nm2[detail::lane_element(i, j)];
-    store(load(element) + value_Nm2, element);
+    add_to(memory.covariance_Nm2[detail::lane_element(i, j)], value_Nm2);
   }
   STRAINWAVE_INLINE Mask is_beyond(std::size_t i, L limit_Nm2) const {
     return load(memory.covariance_Nm2[detail::lane_element(i, i)]) +
@@ -557,7 +582,7 @@ struct RippleGroup {
     if (order.terms > 0) {
       L weight = Real(1);
       for (std::size_t t = 0; t < order.terms; ++t) {
-        const L factor = factors[order.first_pair + 1 + t];
+        const L factor = factors[static_cast<std::size_t>(order.factors[t])];
         weight = fused(factor, factor, weight);
       }
       each_Nm2 = each_Nm2 / weight;

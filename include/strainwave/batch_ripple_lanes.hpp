@@ -8,6 +8,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <type_traits>
 
 #include "strainwave/batch_layout.hpp"
@@ -15,8 +16,9 @@
 
 namespace strainwave {
 
-/// What a further pair is multiplied by.
-enum class RippleFactor : std::uint8_t { load, speed, direction };
+/// What a pair is multiplied by: an order's first one by 1, one that the filters do not have by 0.
+enum class RippleFactor : std::uint8_t { one, load, speed, direction, none };
+inline constexpr std::size_t ripple_factors = 5;
 
 /// An order of a block, alike in all of its lanes but for the order itself.
 struct RippleOrderLayout {
@@ -50,12 +52,13 @@ struct alignas(64) RippleLanes {
   Row per_reference_speed;
   Row per_memory_square;  ///< 1 / (2 pi n)^2
   Row minimum_speed_rad_s;
+  Row least_scale_Nm;
   Row highest_order;
 
   // State.
   Row torque_state_Nm;
   Row coefficients_Nm[coefficients];
-  Row frames[Pairs];  ///< factor of each further pair
+  Row frames[Pairs];  ///< factor of each further pair; 0 for the others
   Row covariance_Nm2[coefficients * (coefficients + 1) / 2];
   Row torque_row_Nm2[coefficients];
   Row torque_variance_Nm2;
@@ -89,10 +92,14 @@ struct alignas(64) RippleLanes {
   /// How often each flag of ripple_lane_flags was raised since the counts were taken.
   Row counts[3];
 
-  RippleOrderLayout orders[Pairs];
+  RippleOrderLayout orders[Pairs] = {};
   std::size_t order_count = 0;
-  std::size_t pair_count = 0;
+  std::size_t order_of[Pairs] = {};   ///< of each pair
+  std::size_t first_of[Pairs] = {};   ///< its order's first pair
+  std::size_t factor_of[Pairs] = {};  ///< a RippleFactor
+  Real widest_offset[Pairs] = {};     ///< of the factor from the frame; infinite where it has none
   bool any_kept = false;
+  bool any_direction = false;
   bool any_own_angle = false;
   bool any_count = false;
 };
@@ -173,6 +180,32 @@ template <class Real, std::size_t MaxPairs>
          turns > -most_lane_turns && turns < most_lane_turns;
 }
 
+/// What is alike in all lanes.
+template <class Real, std::size_t Pairs>
+inline void put_layout(RippleLanes<Real, Pairs>& lanes, const RippleOrderLayout* orders,
+                       std::size_t order_count) {
+  lanes.order_count = order_count;
+  for (std::size_t pair = 0; pair < Pairs; ++pair) {
+    lanes.factor_of[pair] = static_cast<std::size_t>(RippleFactor::none);
+    lanes.widest_offset[pair] = std::numeric_limits<Real>::infinity();
+    lanes.first_of[pair] = pair;
+  }
+  for (std::size_t a = 0; a < order_count; ++a) {
+    const RippleOrderLayout& order = orders[a];
+    lanes.orders[a] = order;
+    lanes.factor_of[order.first_pair] = static_cast<std::size_t>(RippleFactor::one);
+    lanes.order_of[order.first_pair] = a;
+    for (std::size_t t = 0; t < order.terms; ++t) {
+      const std::size_t pair = order.first_pair + 1 + t;
+      lanes.order_of[pair] = a;
+      lanes.first_of[pair] = order.first_pair;
+      lanes.factor_of[pair] = static_cast<std::size_t>(order.factors[t]);
+      lanes.any_direction = lanes.any_direction || order.factors[t] == RippleFactor::direction;
+      lanes.widest_offset[pair] = static_cast<Real>(widest_frame_offset);
+    }
+  }
+}
+
 /// One lane's configuration.
 template <class Real, std::size_t Pairs, std::size_t MaxPairs>
 inline void put_config(RippleLanes<Real, Pairs>& lanes, std::size_t lane,
@@ -194,6 +227,7 @@ inline void put_config(RippleLanes<Real, Pairs>& lanes, std::size_t lane,
   lanes.per_reference_speed[lane] = Real(1) / config.reference_speed_rad_s;
   lanes.per_memory_square[lane] = per_memory_rad * per_memory_rad;
   lanes.minimum_speed_rad_s[lane] = config.minimum_speed_rad_s;
+  lanes.least_scale_Nm[lane] = Real(0.5) * config.torque_noise_Nm;
   lanes.highest_order[lane] = highest_order(config);
   lanes.any_own_angle = lanes.any_own_angle || has_own_angle(config);
 }
