@@ -271,38 +271,6 @@ struct RippleGroup {
     factors[4] = Real(0);
   }
 
-  template <std::size_t P>
-  STRAINWAVE_INLINE L wave_of_pair() const {
-    const std::size_t a = memory.order_of[P];
-    const L wave_Nm = fused(cosines[a], load(memory.coefficients_Nm[2 * P]),
-                            sines[a] * load(memory.coefficients_Nm[2 * P + 1]));
-    return factors[memory.factor_of[P]] * wave_Nm;
-  }
-  template <std::size_t P>
-  STRAINWAVE_INLINE L kept_of_pair() const {
-    return load(memory.kept[memory.order_of[P]]) * wave_of_pair<P>();
-  }
-  template <std::size_t... P>
-  STRAINWAVE_INLINE L ripple_of_all(std::index_sequence<P...>) const {
-    return (wave_of_pair<P>() + ...);
-  }
-  template <std::size_t... P>
-  STRAINWAVE_INLINE L ripple_of_kept(std::index_sequence<P...>) const {
-    return (kept_of_pair<P>() + ...);
-  }
-
-  /// The ripple that is removed, and torque without it and without any.
-  STRAINWAVE_INLINE void remove_ripple() {
-    const L all_Nm = ripple_of_all(by_pair);
-    const L kept_Nm = memory.any_kept ? ripple_of_kept(by_pair) : L(Real(0));
-    ripple_Nm = all_Nm - kept_Nm;
-    if (memory.any_own_angle) {
-      ripple_Nm = ripple_Nm + load(memory.frozen_Nm);
-    }
-    clean_Nm = torque_Nm - ripple_Nm;
-    all_removed_Nm = clean_Nm - kept_Nm;
-  }
-
   // ---- frame ------------------------------------------------------------------------------------
 
   template <std::size_t P>
@@ -361,19 +329,19 @@ struct RippleGroup {
     }
   }
 
-  /// move_row() of ripple_covariance.hpp.
+  /// move_row() of ripple_covariance.hpp, and the ripple of the order itself.
   STRAINWAVE_INLINE void move_row(std::size_t b, std::size_t terms, const L* steps) const {
     L moved[coefficients];
     for (std::size_t j = 0; j < coefficients; ++j) {
       moved[j] = load(memory.covariance_Nm2[detail::lane_element(b, j)]);
     }
-    L torque = load(memory.torque_row_Nm2[b]);
     for (std::size_t t = 0; t < terms; ++t) {
       const std::size_t i = b + 2 * (t + 1);
       for (std::size_t j = 0; j < coefficients; ++j) {
         moved[j] = fused(steps[t], load(memory.covariance_Nm2[detail::lane_element(i, j)]), moved[j]);
       }
-      torque = fused(steps[t], load(memory.torque_row_Nm2[i]), torque);
+      add_to(memory.torque_row_Nm2[b], steps[t] * load(memory.torque_row_Nm2[i]));
+      add_to(memory.coefficients_Nm[b], steps[t] * load(memory.coefficients_Nm[i]));
     }
     for (std::size_t t = 0; t < terms; ++t) {
       moved[b] = fused(steps[t], moved[b + 2 * (t + 1)], moved[b]);
@@ -381,7 +349,50 @@ struct RippleGroup {
     for (std::size_t j = 0; j < coefficients; ++j) {
       store(moved[j], memory.covariance_Nm2[detail::lane_element(b, j)]);
     }
-    store(torque, memory.torque_row_Nm2[b]);
+  }
+  STRAINWAVE_INLINE void add_to(Real* numbers, L value) const {
+    store(load(numbers) + value, numbers);
+  }
+
+  // ---- torque without ripple --------------------------------------------------------------------
+
+  template <std::size_t... I>
+  STRAINWAVE_INLINE void load_rows(const Real (*rows)[block_width<Real>], L* numbers,
+                                   std::index_sequence<I...>) const {
+    ((numbers[I] = load(rows[I])), ...);
+  }
+  template <std::size_t... P>
+  STRAINWAVE_INLINE L sum_with_h(const L* numbers, std::index_sequence<P...>) const {
+    L sums[4] = {Real(0), Real(0), Real(0), Real(0)};
+    ((sums[2 * P % 4] = fused(h[2 * P], numbers[2 * P], sums[2 * P % 4]),
+      sums[(2 * P + 1) % 4] = fused(h[2 * P + 1], numbers[2 * P + 1], sums[(2 * P + 1) % 4])),
+     ...);
+    return (sums[0] + sums[1]) + (sums[2] + sums[3]);
+  }
+  template <std::size_t... P>
+  STRAINWAVE_INLINE void leave_removed(L* numbers, std::index_sequence<P...>) const {
+    ((numbers[2 * P] = load(memory.kept[memory.order_of[P]]) * numbers[2 * P],
+      numbers[2 * P + 1] = load(memory.kept[memory.order_of[P]]) * numbers[2 * P + 1]),
+     ...);
+  }
+
+  /// The ripple that is removed, and torque without it and without any.
+  STRAINWAVE_INLINE void remove_ripple() {
+    L coefficients_Nm[coefficients];
+    load_rows(memory.coefficients_Nm, coefficients_Nm, by_coefficient);
+    const L all_Nm = sum_with_h(coefficients_Nm, by_pair);
+    L kept_Nm = Real(0);
+    if (memory.any_kept) {
+      leave_removed(coefficients_Nm, by_pair);
+      kept_Nm = sum_with_h(coefficients_Nm, by_pair);
+    }
+    ripple_Nm = all_Nm - kept_Nm;
+    if (memory.any_own_angle) {
+      ripple_Nm = ripple_Nm + load(memory.frozen_Nm);
+    }
+    clean_Nm = torque_Nm - ripple_Nm;
+    all_removed_Nm = clean_Nm - kept_Nm;
+    innovation_Nm = all_removed_Nm - expected_Nm - load(memory.torque_state_Nm);
   }
 
   // ---- covariance, written out ------------------------------------------------------------------
@@ -421,19 +432,6 @@ struct RippleGroup {
     (measure_row<I>(with[I] * per_variance, with, std::make_index_sequence<I + 1>{}), ...);
   }
 
-  template <std::size_t... P>
-  STRAINWAVE_INLINE L sum_with_h(const L* numbers, std::index_sequence<P...>) const {
-    L sums[4] = {Real(0), Real(0), Real(0), Real(0)};
-    ((sums[2 * P % 4] = fused(h[2 * P], numbers[2 * P], sums[2 * P % 4]),
-      sums[(2 * P + 1) % 4] = fused(h[2 * P + 1], numbers[2 * P + 1], sums[(2 * P + 1) % 4])),
-     ...);
-    return (sums[0] + sums[1]) + (sums[2] + sums[3]);
-  }
-
-  template <std::size_t... I>
-  STRAINWAVE_INLINE void load_torque_row(L* torque, std::index_sequence<I...>) const {
-    ((torque[I] = load(memory.torque_row_Nm2[I])), ...);
-  }
   /// T's row after the measurement, see measure_torque(); puts P h with T into `row`.
   template <std::size_t... I>
   STRAINWAVE_INLINE void measure_torque(L left, const L* ripple, const L* torque,
@@ -465,7 +463,7 @@ struct RippleGroup {
   STRAINWAVE_INLINE void update() {
     const L noise_Nm2 = load(memory.noise_Nm2);
     L torque_row_Nm2[coefficients];
-    load_torque_row(torque_row_Nm2, by_coefficient);
+    load_rows(memory.torque_row_Nm2, torque_row_Nm2, by_coefficient);
     const L longest_s = static_cast<Real>(detail::longest_torque_walk_s);
     const L walked_s = select(interval_s < longest_s, interval_s, longest_s);
     const L torque_variance_Nm2 =
@@ -487,6 +485,10 @@ struct RippleGroup {
     }
     const L jump_Nm2 = jump_variance(ripple_variance_Nm2);
     const L per_variance = L(Real(1)) / (variance_Nm2 + jump_Nm2);
+    // Before the quotient is there to go on with.
+    L gained_Nm2[Pairs];
+    find_noise(gained_Nm2);
+    track_scale();
     const L state_Nm = load(memory.torque_state_Nm);
     store(fused((with_torque_Nm2 + jump_Nm2) * per_variance, innovation_Nm, state_Nm),
           memory.torque_state_Nm);
@@ -496,31 +498,17 @@ struct RippleGroup {
     if (moving.any()) {
       const L learning = select(moving, per_variance, L(Real(0)));
       measure_coefficients(learning, by_coefficient);
-      learn(learning * innovation_Nm, by_pair);
-      track_scale();
-      walk();
+      learn(learning * innovation_Nm, by_coefficient);
+      add_noise(gained_Nm2);
     }
   }
 
-  /// leave_frame(), and the coefficients' part of the update.
-  template <std::size_t P>
-  STRAINWAVE_INLINE void learn_pair(L gain_per_row) const {
-    const L cosine_Nm = row[2 * P] * gain_per_row;
-    const L sine_Nm = row[2 * P + 1] * gain_per_row;
-    add_to(memory.coefficients_Nm[2 * P], cosine_Nm);
-    add_to(memory.coefficients_Nm[2 * P + 1], sine_Nm);
-    if (const std::size_t first = memory.first_of[P]; first != P) {
-      const L frame = L(Real(0)) - load(memory.frames[P]);
-      add_to(memory.coefficients_Nm[2 * first], frame * cosine_Nm);
-      add_to(memory.coefficients_Nm[2 * first + 1], frame * sine_Nm);
-    }
-  }
-  template <std::size_t... P>
-  STRAINWAVE_INLINE void learn(L gain_per_row, std::index_sequence<P...>) const {
-    (learn_pair<P>(gain_per_row), ...);
-  }
-  STRAINWAVE_INLINE void add_to(Real* numbers, L value) const {
-    store(load(numbers) + value, numbers);
+  /// The coefficients' part of the update.
+  template <std::size_t... I>
+  STRAINWAVE_INLINE void learn(L gain_per_row, std::index_sequence<I...>) const {
+    ((store(fused(row[I], gain_per_row, load(memory.coefficients_Nm[I])),
+            memory.coefficients_Nm[I])),
+     ...);
   }
 
   /// track_scale() of ripple_state.hpp.
@@ -539,18 +527,19 @@ struct RippleGroup {
 
   // ---- process noise ----------------------------------------------------------------------------
 
-  /// let_ripple_walk() of ripple_state.hpp, without a gap.
-  STRAINWAVE_INLINE void walk() {
+  /// let_ripple_walk() of ripple_state.hpp, without a gap: variance that each order gains, shared
+  /// among its pairs.
+  STRAINWAVE_INLINE void find_noise(L* gained_Nm2) const {
     const L square_rad2 = rotation_rad * rotation_rad;
     const L per_square = load(memory.per_memory_square);
     const L share_all = square_rad2 * per_square;
     const L share = select(share_all < L(Real(1)), share_all, L(Real(1)));
     const L walk_Nm2 = L(Real(2)) * load(memory.walk_Nm2_per_s) * interval_s;
     const L noise_Nm2 = L(Real(2)) * load(memory.noise_Nm2) * share;
-    const L walk_per_square_Nm2 =
-        select(share > L(Real(0)), walk_Nm2 * per_square, L(Real(0)));
+    const L walk_per_square_Nm2 = select(share > L(Real(0)), walk_Nm2 * per_square, L(Real(0)));
     const L white_Nm2 = fused(L(Real(0.25)) * walk_Nm2, share, noise_Nm2);
     for (std::size_t a = 0; a < memory.order_count; ++a) {
+      const RippleOrderLayout& layout = memory.orders[a];
       const L order = load(memory.order[a]);
       const L per_order = load(memory.per_order[a]);
       const L square = (order * order) * square_rad2;
@@ -559,11 +548,18 @@ struct RippleGroup {
       bent = fused(square, bent, L(Real(4.12392359e-03)));
       bent = fused(square, bent, L(Real(8.33619094e-02)));
       bent = fused(square, bent, L(Real(1)));
-      L gained_Nm2 = fused((per_order * per_order) * walk_per_square_Nm2, bent, noise_Nm2);
-      gained_Nm2 = select(square > L(pi<Real> * pi<Real>), white_Nm2, gained_Nm2);
-      add_noise(memory.orders[a], select(moving, gained_Nm2, L(Real(0))));
+      L each_Nm2 = fused((per_order * per_order) * walk_per_square_Nm2, bent, noise_Nm2);
+      each_Nm2 = select(square > L(pi<Real> * pi<Real>), white_Nm2, each_Nm2);
+      if (layout.terms > 0) {
+        L weight = Real(1);
+        for (std::size_t t = 0; t < layout.terms; ++t) {
+          const L factor = factors[static_cast<std::size_t>(layout.factors[t])];
+          weight = fused(factor, factor, weight);
+        }
+        each_Nm2 = each_Nm2 / weight;
+      }
+      gained_Nm2[a] = select(moving, each_Nm2, L(Real(0)));
     }
-    limited = limited & moving;
   }
 
   STRAINWAVE_INLINE void add(std::size_t i, std::size_t j, L value_Nm2) const {
@@ -575,39 +571,50 @@ struct RippleGroup {
            L(Real(2)) * limit_Nm2;
   }
 
-  /// add_noise() of ripple_covariance.hpp.
-  STRAINWAVE_INLINE void add_noise(const RippleOrderLayout& order, L each_Nm2) {
-    const std::size_t b = 2 * order.first_pair;
-    const L limit_Nm2 = load(memory.limit_Nm2);
-    if (order.terms > 0) {
-      L weight = Real(1);
-      for (std::size_t t = 0; t < order.terms; ++t) {
-        const L factor = factors[static_cast<std::size_t>(order.factors[t])];
-        weight = fused(factor, factor, weight);
-      }
-      each_Nm2 = each_Nm2 / weight;
+  /// add_noise() of ripple_covariance.hpp: for further pairs, then for first ones.
+  template <std::size_t P>
+  STRAINWAVE_INLINE void add_to_further(const L* gained_Nm2, L* weights, L* sums_Nm2) {
+    constexpr std::size_t i = 2 * P;
+    const std::size_t first = memory.first_of[P];
+    if (first == P) {
+      weights[P] = Real(1);
+      sums_Nm2[P] = Real(0);
+      return;
     }
-    L weight = Real(1);
-    L sum_Nm2 = Real(0);
-    for (std::size_t t = 0; t < order.terms; ++t) {
-      const std::size_t i = b + 2 * (t + 1);
-      const L factor = load(memory.frames[order.first_pair + 1 + t]);
-      weight = fused(factor, factor, weight);
-      const Mask beyond = is_beyond(i, limit_Nm2);
-      limited = limited | beyond;
-      const L its_Nm2 = select(beyond, L(Real(0)), each_Nm2);
-      const L with_first_Nm2 = factor * its_Nm2;
-      add(i, b, with_first_Nm2);
-      add(i + 1, b + 1, with_first_Nm2);
-      add(i, i, its_Nm2);
-      add(i + 1, i + 1, its_Nm2);
-      sum_Nm2 = fused(factor, with_first_Nm2, sum_Nm2);
-    }
-    const Mask beyond = is_beyond(b, weight * limit_Nm2);
+    const L factor = load(memory.frames[P]);
+    const Mask beyond = is_beyond(i, load(memory.limit_Nm2));
     limited = limited | beyond;
-    sum_Nm2 = sum_Nm2 + select(beyond, L(Real(0)), each_Nm2);
-    add(b, b, sum_Nm2);
-    add(b + 1, b + 1, sum_Nm2);
+    const L its_Nm2 = select(beyond, L(Real(0)), gained_Nm2[memory.order_of[P]]);
+    const L with_first_Nm2 = factor * its_Nm2;
+    add(i, 2 * first, with_first_Nm2);
+    add(i + 1, 2 * first + 1, with_first_Nm2);
+    add(i, i, its_Nm2);
+    add(i + 1, i + 1, its_Nm2);
+    weights[first] = fused(factor, factor, weights[first]);
+    sums_Nm2[first] = fused(factor, with_first_Nm2, sums_Nm2[first]);
+  }
+  template <std::size_t P>
+  STRAINWAVE_INLINE void add_to_first(const L* gained_Nm2, const L* weights, const L* sums_Nm2) {
+    constexpr std::size_t i = 2 * P;
+    if (memory.factor_of[P] == 0) {
+      const Mask beyond = is_beyond(i, weights[P] * load(memory.limit_Nm2));
+      limited = limited | beyond;
+      const L sum_Nm2 =
+          sums_Nm2[P] + select(beyond, L(Real(0)), gained_Nm2[memory.order_of[P]]);
+      add(i, i, sum_Nm2);
+      add(i + 1, i + 1, sum_Nm2);
+    }
+  }
+  template <std::size_t... P>
+  STRAINWAVE_INLINE void add_to_pairs(const L* gained_Nm2, std::index_sequence<P...>) {
+    L weights[Pairs];
+    L sums_Nm2[Pairs];
+    (add_to_further<P>(gained_Nm2, weights, sums_Nm2), ...);
+    (add_to_first<P>(gained_Nm2, weights, sums_Nm2), ...);
+  }
+  STRAINWAVE_INLINE void add_noise(const L* gained_Nm2) {
+    add_to_pairs(gained_Nm2, by_pair);
+    limited = limited & moving;
   }
 
   // ---- end --------------------------------------------------------------------------------------
@@ -677,10 +684,9 @@ struct RippleGroup {
     }
     find_waves();
     find_factors();
-    remove_ripple();
-    innovation_Nm = all_removed_Nm - expected_Nm - load(memory.torque_state_Nm);
     limited = none();
     enter_frame();
+    remove_ripple();
     update();
     finish();
     put_all();

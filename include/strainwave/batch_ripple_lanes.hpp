@@ -57,7 +57,7 @@ struct alignas(64) RippleLanes {
 
   // State.
   Row torque_state_Nm;
-  Row coefficients_Nm[coefficients];
+  Row coefficients_Nm[coefficients];  ///< an order's first pair: its ripple in the frame
   Row frames[Pairs];  ///< factor of each further pair; 0 for the others
   Row covariance_Nm2[coefficients * (coefficients + 1) / 2];
   Row torque_row_Nm2[coefficients];
@@ -253,7 +253,13 @@ inline void put_state(RippleLanes<Real, Pairs>& lanes, std::size_t lane,
   }
   for (std::size_t a = 0; a < lanes.order_count; ++a) {
     for (std::size_t t = 0; t < lanes.orders[a].terms; ++t) {
-      lanes.frames[lanes.orders[a].first_pair + 1 + t][lane] = p.frames[a][t];
+      const std::size_t first = lanes.orders[a].first_pair;
+      const std::size_t pair = first + 1 + t;
+      lanes.frames[pair][lane] = p.frames[a][t];
+      for (std::size_t side = 0; side < 2; ++side) {
+        lanes.coefficients_Nm[2 * first + side][lane] +=
+            p.frames[a][t] * state.states_Nm[1 + 2 * pair + side];
+      }
     }
   }
   lanes.torque_state_Nm[lane] = state.states_Nm[0];
@@ -290,7 +296,13 @@ inline void take_state(const RippleLanes<Real, Pairs>& lanes, std::size_t lane,
   }
   for (std::size_t a = 0; a < lanes.order_count; ++a) {
     for (std::size_t t = 0; t < lanes.orders[a].terms; ++t) {
-      p.frames[a][t] = lanes.frames[lanes.orders[a].first_pair + 1 + t][lane];
+      const std::size_t first = lanes.orders[a].first_pair;
+      const std::size_t pair = first + 1 + t;
+      p.frames[a][t] = lanes.frames[pair][lane];
+      for (std::size_t side = 0; side < 2; ++side) {
+        state.states_Nm[1 + 2 * first + side] -=
+            p.frames[a][t] * state.states_Nm[1 + 2 * pair + side];
+      }
     }
   }
   state.states_Nm[0] = lanes.torque_state_Nm[lane];
