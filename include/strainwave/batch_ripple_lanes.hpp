@@ -244,12 +244,15 @@ inline void put_state(RippleLanes<Real, Pairs>& lanes, std::size_t lane,
   }
   const std::size_t count = 2 * pair_count(config);
   const auto& p = state.covariance;
-  for (std::size_t i = 0; i < count; ++i) {
-    lanes.coefficients_Nm[i][lane] = state.states_Nm[i + 1];
-    lanes.torque_row_Nm2[i][lane] = p.torque_row_Nm2[i];
+  // All of them: what the filter does not have may hold what came of a sample done alone.
+  for (std::size_t i = 0; i < 2 * Pairs; ++i) {
+    const bool is_used = i < count;
+    lanes.coefficients_Nm[i][lane] = is_used ? state.states_Nm[i + 1] : Real(0);
+    lanes.torque_row_Nm2[i][lane] = is_used ? p.torque_row_Nm2[i] : Real(0);
     for (std::size_t j = 0; j <= i; ++j) {
-      lanes.covariance_Nm2[lane_element(i, j)][lane] = element_of(p, i, j);
+      lanes.covariance_Nm2[lane_element(i, j)][lane] = is_used ? element_of(p, i, j) : Real(0);
     }
+    lanes.frames[i / 2][lane] = Real(0);
   }
   for (std::size_t a = 0; a < lanes.order_count; ++a) {
     for (std::size_t t = 0; t < lanes.orders[a].terms; ++t) {

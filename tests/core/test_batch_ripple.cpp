@@ -1,0 +1,278 @@
+// Ripple filters in lanes: each channel as step() makes it, whatever the others do.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <tuple>
+#include <vector>
+
+#include "ripple_examples.hpp"
+#include "strainwave/batch_ripple.hpp"
+
+namespace {
+
+using strainwave::RippleOutput;
+using strainwave::StatusFlag;
+using strainwave::VectorLevel;
+
+constexpr std::size_t most_pairs = 12;
+template <class Real>
+using Config = strainwave::RippleFilterConfig<Real, most_pairs>;
+template <class Real>
+using State = strainwave::RippleFilterState<Real, most_pairs>;
+
+std::vector<VectorLevel> levels() {
+  std::vector<VectorLevel> found;
+  for (const VectorLevel level : {VectorLevel::portable, VectorLevel::x86_64_v2,
+                                  VectorLevel::x86_64_v3, VectorLevel::x86_64_v4}) {
+    if (strainwave::is_available(level)) {
+      found.push_back(level);
+    }
+  }
+  return found;
+}
+
+/// Joints of five structures that differ in everything else: with load, speed and direction, with
+/// fractions of orders and frozen terms, with a delay and a lead, and one with too many pairs for
+/// lanes.
+template <class Real>
+Config<Real> joint(std::size_t number) {
+  Config<Real> config;
+  config.order_count = 3;
+  config.orders[0] = {.order = {2, 1}, .with_load = true, .with_speed = true};
+  config.orders[1] = {.order = {4, 1}, .with_load = true, .with_speed = true};
+  config.orders[2] = {.order = {6, 1}};
+  switch (number % 5) {
+    case 1:
+      config.orders[0] = {.order = {2, 1}, .with_direction = true};
+      config.orders[1] = {.order = {number % 2 == 0 ? 5U : 3U, 1}};
+      config.order_count = 2;
+      break;
+    case 2:
+      config.orders[1] = {.order = {5, 2}, .with_load = true};
+      config.orders[2] = {.order = {3, 2}, .keep = true};
+      config.frozen_count = 1;
+      config.frozen[0] = {{3, 100}, Real(0.3), Real(-0.2)};
+      break;
+    case 3:
+      config.orders[0] = {.order = {2, 1},
+                          .with_load = true,
+                          .with_speed = true,
+                          .with_direction = true,
+                          .keep = true};
+      config.orders[1] = {.order = {4, 1}, .with_load = true, .with_speed = true};
+      break;
+    case 4:
+      for (std::size_t a = 0; a < 3; ++a) {
+        config.orders[a].with_load = config.orders[a].with_speed = true;
+        config.orders[a].with_direction = true;
+      }
+      break;
+    default:
+      break;
+  }
+  config.angle_to_torque_delay_s =
+      number % 7 == 5 ? Real(0.0023) : (number % 7 == 6 ? Real(-0.0005) : Real(0));
+  config.memory_turns = static_cast<Real>(5.0 + static_cast<double>(number));
+  config.torque_noise_Nm *= static_cast<Real>(1.0 + 0.05 * static_cast<double>(number));
+  return config;
+}
+
+/// A channel's recording and what a filter makes of it.
+template <class Real>
+struct Log {
+  std::vector<Real> torque_Nm;
+  std::vector<double> angle_rad;
+  std::vector<Real> interval_s;
+  std::vector<Real> expected_Nm;
+  std::vector<Real> outputs[strainwave::ripple_outputs];
+  std::vector<strainwave::Status> status;
+
+  [[nodiscard]] strainwave::RippleChannel<Real> channel(std::size_t start, std::size_t end) {
+    strainwave::RippleChannel<Real> channel;
+    channel.sample_count = end - start;
+    channel.measured_torque_Nm = torque_Nm.data() + start;
+    channel.motor_angle_rad = angle_rad.data() + start;
+    channel.interval_s = interval_s.empty() ? nullptr : interval_s.data() + start;
+    channel.expected_torque_Nm = expected_Nm.empty() ? nullptr : expected_Nm.data() + start;
+    for (std::size_t i = 0; i < strainwave::ripple_outputs; ++i) {
+      channel.outputs[i] = outputs[i].data() + start;
+    }
+    channel.status = status.data() + start;
+    return channel;
+  }
+  [[nodiscard]] strainwave::RippleChannel<Real> channel() {
+    return channel(0, torque_Nm.size());
+  }
+};
+
+/// A joint that turns both ways, rests, is loaded, and touches something.
+template <class Real>
+Log<Real> quiet_log(std::size_t number, std::size_t samples) {
+  Log<Real> log;
+  Random random(number + 1);
+  double angle_rad = 1000.0 * static_cast<double>(number % 3) - 1000.0;
+  for (std::size_t k = 0; k < samples; ++k) {
+    const double time_s = 1e-3 * static_cast<double>(k);
+    double speed_rad_s = 120.0 * std::sin(2.0 * time_s + static_cast<double>(number)) + 40.0;
+    if (number % 4 == 1 && k % 900 > 700) {
+      speed_rad_s = 0.0;
+    }
+    angle_rad += speed_rad_s * 1e-3;
+    const double load_Nm = 15.0 * std::sin(3.0 * time_s + static_cast<double>(number)) +
+                           (k % 1100 > 1000 ? 20.0 : 0.0);
+    log.angle_rad.push_back(angle_rad);
+    log.torque_Nm.push_back(static_cast<Real>(
+        load_Nm + (1.0 + 0.02 * load_Nm) * example_ripple_Nm(angle_rad) + 0.04 * random.gaussian()));
+  }
+  for (auto& output : log.outputs) {
+    output.assign(samples, Real(-99));
+  }
+  log.status.assign(samples, 0xFFFFFFFFU);
+  return log;
+}
+
+/// The same with everything in it that a filter has to refuse or to flag.
+template <class Real>
+Log<Real> wild_log(std::size_t number, std::size_t samples) {
+  using Limits = std::numeric_limits<Real>;
+  const Real wild[] = {Limits::quiet_NaN(), Limits::infinity(), -Limits::infinity(),
+                       Limits::max(),       Real(1e16),         Real(-1e30)};
+  Log<Real> log = quiet_log<Real>(number, samples);
+  Random random(number + 1000);
+  log.interval_s.assign(samples, Real(1e-3));
+  if (number % 3 != 0) {
+    log.expected_Nm.assign(samples, Real(0));
+  }
+  for (std::size_t k = 1; k < samples; ++k) {
+    const Real value = wild[random.bits() % 6];
+    switch (random.bits() % 400) {
+      case 0:
+        log.torque_Nm[k] = value;
+        break;
+      case 1:
+        log.angle_rad[k] = static_cast<double>(value);
+        break;
+      case 2:
+        log.interval_s[k] = value;
+        break;
+      case 3:
+        log.interval_s[k] = Real(-1e-3);
+        break;
+      case 4:
+        log.interval_s[k] = Real(0.05);  // a gap
+        break;
+      case 5:
+        log.torque_Nm[k] = log.torque_Nm[k - 1];  // a row that repeats the last one
+        log.angle_rad[k] = log.angle_rad[k - 1];
+        break;
+      case 6:
+        log.angle_rad[k] += 500.0;  // a jump there, and back
+        break;
+      case 7:
+        if (!log.expected_Nm.empty()) {
+          log.expected_Nm[k] = value;
+        }
+        break;
+      default:
+        break;
+    }
+  }
+  for (std::size_t k = samples / 2; k < samples / 2 + 40 && k < samples; ++k) {
+    log.angle_rad[k] = std::numeric_limits<double>::quiet_NaN();  // a cable that is out
+  }
+  return log;
+}
+
+/// What step() makes of it, sample after sample.
+template <class Real>
+Log<Real> one_by_one(const Config<Real>& config, State<Real>& state, Log<Real> log) {
+  strainwave::detail::filter_one(config, state, log.channel());
+  return log;
+}
+
+template <class Real>
+bool is_alike(Real a, Real b, double tolerance) {
+  const double scale = std::max(1.0, std::abs(static_cast<double>(b)));
+  return a == b || (std::isnan(a) && std::isnan(b)) ||
+         std::abs(static_cast<double>(a) - static_cast<double>(b)) <= tolerance * scale;
+}
+
+/// Largest difference that rounding leaves, Nm: float learns from its own rounding.
+template <class Real>
+constexpr double tolerance_Nm = sizeof(Real) == 4 ? 4e-3 : 1e-9;
+
+template <class Real>
+void expect_alike(const Log<Real>& lanes, const Log<Real>& alone, std::size_t channel) {
+  std::size_t other_flags = 0;
+  for (std::size_t k = 0; k < alone.status.size(); ++k) {
+    other_flags += lanes.status[k] != alone.status[k] ? 1U : 0U;
+    for (const RippleOutput output : {RippleOutput::torque, RippleOutput::ripple,
+                                      RippleOutput::all_removed, RippleOutput::state}) {
+      const auto i = static_cast<std::size_t>(output);
+      ASSERT_TRUE(is_alike(lanes.outputs[i][k], alone.outputs[i][k], tolerance_Nm<Real>))
+          << "channel " << channel << " output " << i << " sample " << k << ": "
+          << lanes.outputs[i][k] << " and " << alone.outputs[i][k];
+    }
+  }
+  // A comparison at its very limit may come out otherwise in float.
+  EXPECT_LE(other_flags, sizeof(Real) == 4 ? alone.status.size() / 500 : 0U) << channel;
+}
+
+template <class Real>
+struct Batch {
+  std::vector<Config<Real>> configs;
+  std::vector<State<Real>> states;
+  std::vector<Log<Real>> logs;
+
+  void run(const strainwave::BatchOptions& options) {
+    std::vector<strainwave::RippleChannel<Real>> channels;
+    for (auto& log : logs) {
+      channels.push_back(log.channel());
+    }
+    strainwave::process_batch<Real, most_pairs>(configs, states, channels, options);
+  }
+};
+
+template <class Real>
+Batch<Real> batch_of(std::size_t channels, bool wild) {
+  Batch<Real> batch;
+  for (std::size_t i = 0; i < channels; ++i) {
+    const std::size_t samples = 1500 + 37 * (i % 11);
+    batch.configs.push_back(joint<Real>(i));
+    batch.states.push_back(strainwave::initial_state(batch.configs.back()));
+    batch.logs.push_back(wild ? wild_log<Real>(i, samples) : quiet_log<Real>(i, samples));
+  }
+  return batch;
+}
+
+template <class Real>
+class BatchRipple : public testing::Test {};
+using Reals = testing::Types<float, double>;
+TYPED_TEST_SUITE(BatchRipple, Reals);
+
+TYPED_TEST(BatchRipple, EachChannelIsAsStepMakesIt) {
+  for (const bool wild : {false, true}) {
+    const Batch<TypeParam> start = batch_of<TypeParam>(45, wild);
+    for (const VectorLevel level : levels()) {
+      Batch<TypeParam> batch = start;
+      batch.run({.level = level, .thread_count = 2});
+      for (std::size_t i = 0; i < start.logs.size(); ++i) {
+        State<TypeParam> state = start.states[i];
+        const auto alone = one_by_one(start.configs[i], state, start.logs[i]);
+        SCOPED_TRACE(testing::Message() << "level " << static_cast<int>(level) << " wild " << wild);
+        expect_alike(batch.logs[i], alone, i);
+        EXPECT_EQ(batch.states[i].counters.samples, state.counters.samples);
+        EXPECT_EQ(batch.states[i].counters.faults, state.counters.faults);
+        if (this->HasFatalFailure()) {
+          return;
+        }
+      }
+    }
+  }
+}
+
+}  // namespace
