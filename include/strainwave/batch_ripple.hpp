@@ -12,7 +12,6 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
-#include <numeric>
 #include <span>
 #include <utility>
 #include <vector>
@@ -120,10 +119,6 @@ struct RippleKernel {
 template <class Real, std::size_t Pairs>
 [[nodiscard]] inline RippleKernel<Real, Pairs> ripple_kernel(VectorLevel level) {
   switch (level) {
-#if STRAINWAVE_HAS_LANES
-    case VectorLevel::portable:
-      return {level_portable::filter_ripple_tile<Real, Pairs>,
-              level_portable::convert_angles<Real>};
 #if STRAINWAVE_HAS_X86_LEVELS
     case VectorLevel::x86_64_v2:
       return {level_v2::filter_ripple_tile<Real, Pairs>, level_v2::convert_angles<Real>};
@@ -131,7 +126,10 @@ template <class Real, std::size_t Pairs>
       return {level_v3::filter_ripple_tile<Real, Pairs>, level_v3::convert_angles<Real>};
     case VectorLevel::x86_64_v4:
       return {level_v4::filter_ripple_tile<Real, Pairs>, level_v4::convert_angles<Real>};
-#endif
+#elif STRAINWAVE_HAS_LANES
+    case VectorLevel::portable:
+      return {level_portable::filter_ripple_tile<Real, Pairs>,
+              level_portable::convert_angles<Real>};
 #endif
     default:
       return {};
@@ -493,7 +491,9 @@ template <class Real>
 [[nodiscard]] inline std::vector<std::size_t> sorted_channels(
     const std::vector<RippleKind>& kinds, std::span<const RippleChannel<Real>> channels) {
   std::vector<std::size_t> order(channels.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    order[i] = i;
+  }
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
     return kinds[a] != kinds[b] ? kinds[a] < kinds[b]
                                 : channels[a].sample_count > channels[b].sample_count;

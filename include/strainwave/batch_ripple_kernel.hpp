@@ -6,7 +6,11 @@
 /// memory, its lower triangle alone; what runs over it is written out.
 // No guard and no includes: see lanes_each_level.hpp.
 
-#define STRAINWAVE_INLINE [[gnu::always_inline, gnu::no_sanitize("undefined")]] inline
+// Without the sanitizers, as the published filter's kernel.
+#define STRAINWAVE_INLINE \
+  [[gnu::always_inline, gnu::no_sanitize("address"), gnu::no_sanitize("undefined")]] inline
+#define STRAINWAVE_KERNEL \
+  [[gnu::noinline, gnu::no_sanitize("address"), gnu::no_sanitize("undefined")]] inline
 
 template <class Real>
 using WholeLanes = typename LaneVectors<Real>::Wholes;
@@ -72,7 +76,7 @@ STRAINWAVE_INLINE CosSin<Lanes<Real>> cos_sin_of_fraction(WholeLanes<Real> fract
 /// Angles of one channel as nearest turns and fraction; turns that no lane takes where they are out
 /// of reach.
 template <class Real>
-[[gnu::no_sanitize("undefined")]] inline void convert_angles(const double* angle_rad,
+STRAINWAVE_KERNEL void convert_angles(const double* angle_rad,
                                                              std::size_t count, Real* turns,
                                                              Real* fraction) {
   using Whole = typename LaneVectors<Real>::Whole;
@@ -700,7 +704,7 @@ struct RippleGroup {
 
 /// A tile through all lanes of a block.
 template <class Real, std::size_t Pairs>
-inline void filter_ripple_tile(RippleLanes<Real, Pairs>& memory, const RippleTile<Real>& tile,
+STRAINWAVE_KERNEL void filter_ripple_tile(RippleLanes<Real, Pairs>& memory, const RippleTile<Real>& tile,
                                const RippleAlone& alone) {
   using Group = RippleGroup<Real, Pairs>;
   for (std::size_t lane = 0; lane < block_width<Real>; lane += Lanes<Real>::count) {
@@ -710,4 +714,5 @@ inline void filter_ripple_tile(RippleLanes<Real, Pairs>& memory, const RippleTil
   }
 }
 
+#undef STRAINWAVE_KERNEL
 #undef STRAINWAVE_INLINE
