@@ -19,14 +19,21 @@ namespace strainwave {
 
 namespace detail {
 
+/// Further pairs are forgotten so many times more slowly than an order's first one, because they
+/// are seen only as far as load and speed change.  Measured on logs that do change them; on others
+/// the comparison at the boundaries decides.
+inline constexpr double slowness_of_further_pairs = 12.0;
+
 /// Samples before `start` in which the motor has travelled so many memories; all of them where it
 /// has not.  Standstill, jumps and missing angles teach nothing and are passed over.
 template <class Real, std::size_t MaxPairs>
 [[nodiscard]] inline std::size_t warm_up_before(const RippleFilterConfig<Real, MaxPairs>& config,
                                                 const RippleChannel<Real>& channel,
                                                 std::size_t start, double memories) {
+  const double slowness =
+      pair_count(config) > config.order_count ? slowness_of_further_pairs : 1.0;
   const double needed_rad =
-      memories * two_pi<double> * static_cast<double>(config.memory_turns);
+      memories * slowness * two_pi<double> * static_cast<double>(config.memory_turns);
   const auto least_rad_s = static_cast<double>(config.minimum_speed_rad_s);
   double travel_rad = 0.0;
   std::size_t k = start;
