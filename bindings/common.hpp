@@ -326,6 +326,7 @@ void bind_gauge_monitor(nb::module_& m);
 void bind_calibration(nb::module_& m);
 void bind_oscillator_filter(nb::module_& m);
 void bind_batch(nb::module_& m);
+void bind_batch_ripple(nb::module_& m);
 void bind_ripple_config(nb::module_& m);
 void bind_ripple_filter(nb::module_& m);
 void bind_ripple_smoother(nb::module_& m);

@@ -18,6 +18,7 @@ NB_MODULE(_core, m) {
   bind_batch(m);
   bind_ripple_config(m);
   bind_ripple_filter(m);
+  bind_batch_ripple(m);
   bind_ripple_smoother(m);
   bind_torque_sensor(m);
   bind_tracking_notch(m);

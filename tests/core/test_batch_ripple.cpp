@@ -10,6 +10,7 @@
 
 #include "ripple_examples.hpp"
 #include "strainwave/batch_ripple.hpp"
+#include "strainwave/batch_ripple_long.hpp"
 
 namespace {
 
@@ -269,6 +270,90 @@ TYPED_TEST(BatchRipple, EachChannelIsAsStepMakesIt) {
       }
     }
   }
+}
+
+TYPED_TEST(BatchRipple, WhatOneChannelHoldsDoesNotReachAnother) {
+  using Real = TypeParam;
+  Batch<Real> quiet = batch_of<Real>(16, false);
+  Batch<Real> spoilt = quiet;
+  for (std::size_t k = 300; k < spoilt.logs[5].torque_Nm.size(); ++k) {
+    spoilt.logs[5].torque_Nm[k] = std::numeric_limits<Real>::quiet_NaN();
+  }
+  quiet.run({});
+  spoilt.run({});
+  for (std::size_t i = 0; i < quiet.logs.size(); ++i) {
+    const auto torque = static_cast<std::size_t>(RippleOutput::torque);
+    EXPECT_EQ(quiet.logs[i].outputs[torque] == spoilt.logs[i].outputs[torque], i != 5) << i;
+  }
+}
+
+TYPED_TEST(BatchRipple, AStateGoesOnWithStepAndBack) {
+  using Real = TypeParam;
+  const Config<Real> config = joint<Real>(0);
+  const Log<Real> log = wild_log<Real>(0, 1200);
+  State<Real> alone = strainwave::initial_state(config);
+  const Log<Real> expected = one_by_one(config, alone, log);
+  Log<Real> parts = log;
+  State<Real> state = strainwave::initial_state(config);
+  for (std::size_t start = 0; start < 1200; start += 150) {
+    const auto channel = parts.channel(start, start + 150);
+    if (start % 300 == 0) {
+      strainwave::process_batch<Real, most_pairs>({&config, 1}, {&state, 1}, {&channel, 1});
+    } else {
+      strainwave::detail::filter_one(config, state, channel);
+    }
+  }
+  expect_alike(parts, expected, 0);
+  EXPECT_EQ(state.counters.samples, 1200U);
+}
+
+template <class Real>
+double rms_difference_Nm(const Log<Real>& a, const Log<Real>& b) {
+  const auto torque = static_cast<std::size_t>(RippleOutput::torque);
+  double squares_Nm2 = 0.0;
+  for (std::size_t k = 0; k < a.status.size(); ++k) {
+    const double apart_Nm = static_cast<double>(a.outputs[torque][k]) -
+                            static_cast<double>(b.outputs[torque][k]);
+    squares_Nm2 += apart_Nm * apart_Nm;
+  }
+  return std::sqrt(squares_Nm2 / static_cast<double>(a.status.size()));
+}
+
+TYPED_TEST(BatchRipple, ALongLogInChunksIsAsInSequence) {
+  using Real = TypeParam;
+  auto config = two_orders<Real, most_pairs>();
+  config.memory_turns = Real(3);
+  const Log<Real> log = quiet_log<Real>(2, 60000);
+  Log<Real> sequence = log;
+  State<Real> state = strainwave::initial_state(config);
+  const auto exact =
+      strainwave::process_long(config, state, sequence.channel(), {.in_sequence = true});
+  EXPECT_EQ(exact.chunk_count, 1U);
+  Log<Real> chunks = log;
+  State<Real> chunked = strainwave::initial_state(config);
+  const auto report = strainwave::process_long(config, chunked, chunks.channel());
+  EXPECT_GT(report.chunk_count, 4U);
+  EXPECT_LE(report.largest_ripple_difference_Nm, 1e-4);
+  EXPECT_LE(rms_difference_Nm(chunks, sequence), 1e-4);
+  EXPECT_EQ(chunked.counters.samples, 60000U);
+}
+
+TYPED_TEST(BatchRipple, AWarmUpThatIsTooShortIsFoundOut) {
+  using Real = TypeParam;
+  auto config = two_orders<Real, most_pairs>();
+  config.memory_turns = Real(3);
+  Log<Real> log = quiet_log<Real>(3, 40000);
+  State<Real> state = strainwave::initial_state(config);
+  const auto report =
+      strainwave::process_long(config, state, log.channel(), {.warm_up_memories = 0.3});
+  EXPECT_GT(report.repeated_chunks, 0U);
+  Log<Real> open = log;
+  State<Real> other = strainwave::initial_state(config);
+  const auto tolerant = strainwave::process_long(
+      config, other, open.channel(),
+      {.warm_up_memories = 0.3, .tolerance_Nm = 10.0, .state_tolerance_Nm = 10.0});
+  EXPECT_EQ(tolerant.repeated_chunks, 0U);
+  EXPECT_GT(tolerant.largest_ripple_difference_Nm, 1e-4);
 }
 
 }  // namespace

@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
+#include <nanobind/stl/tuple.h>
+#include <nanobind/stl/vector.h>
+
+#include <limits>
+#include <optional>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "bind_ripple_filter.hpp"
+#include "bind_status.hpp"
+#include "strainwave/batch_ripple.hpp"
+#include "strainwave/batch_ripple_long.hpp"
+#include "strainwave/sample_clock.hpp"
+
+namespace strainwave::bindings {
+
+using namespace nb::literals;
+
+namespace {
+
+/// Pairs that a batch has room for: those that run on lanes.
+inline constexpr std::size_t batch_pairs = strainwave::detail::most_lane_pairs;
+
+/// Results of one channel: torque, ripple and status.
+template <class Real>
+struct RippleResultRow {
+  FilledVector<Real> torque_Nm;
+  FilledVector<Real> ripple_Nm;
+  FilledVector<std::uint32_t> status;
+
+  explicit RippleResultRow(std::size_t size) : torque_Nm(size), ripple_Nm(size), status(size) {}
+};
+template <class Real>
+using RippleGiven = std::tuple<VectorOut<Real>, VectorOut<Real>, VectorOut<std::uint32_t>>;
+
+/// What a clock says of a recording's stamps.
+template <class Real>
+struct Stamped {
+  std::vector<Real> interval_s;
+  std::vector<std::pair<std::size_t, Status>> remarks;
+};
+
+template <class Real>
+Stamped<Real> stamped(SampleClock& clock, const double* time_s, std::size_t size) {
+  Stamped<Real> result;
+  result.interval_s.resize(size);
+  for (std::size_t k = 0; k < size; ++k) {
+    const Interval interval = take_stamp(clock, time_s[k]);
+    const bool finite = !has(interval.status, StatusFlag::time_not_finite);
+    result.interval_s[k] = finite ? static_cast<Real>(interval.interval_s)
+                                  : std::numeric_limits<Real>::quiet_NaN();
+    if (interval.status != 0) {
+      result.remarks.emplace_back(k, interval.status);
+    }
+  }
+  return result;
+}
+
+template <class Real>
+class RippleBatch {
+ public:
+  using Config = RippleFilterConfig<Real, batch_pairs>;
+  using State = RippleFilterState<Real, batch_pairs>;
+  using Rows = std::vector<std::tuple<Vector<double>, Vector<double>, Vector<Real>,
+                                      std::optional<Vector<Real>>>>;
+
+  explicit RippleBatch(const std::vector<RippleConfigD>& configs) {
+    for (const RippleConfigD& each : configs) {
+      if (pair_count(each) > batch_pairs) {
+        raise_input_error("configs have more than " + std::to_string(batch_pairs) +
+                          " pairs of coefficients: take RippleFilter for these");
+      }
+      configs_.push_back(converted<Real, batch_pairs>(each));
+      require(check(configs_.back()));  // what double holds may vanish or overflow in float
+    }
+    reset();
+  }
+
+  void reset() {
+    calls_.wait();
+    states_.clear();
+    for (const Config& config : configs_) {
+      states_.push_back(initial_state(config));
+    }
+    clocks_.assign(configs_.size(), SampleClock{});
+  }
+
+  std::vector<RippleGiven<Real>> process(const Rows& rows, bool angle_referenced,
+                                         VectorLevel level, std::size_t threads) {
+    return run(rows, angle_referenced, [&](const std::vector<RippleChannel<Real>>& channels) {
+      process_batch<Real, batch_pairs>(configs_, states_, channels,
+                                       {.level = level, .thread_count = threads});
+    });
+  }
+
+  std::pair<RippleGiven<Real>, LongReport> process_one(const Rows& rows, bool angle_referenced,
+                                                       const LongOptions& options) {
+    LongReport report;
+    auto given = run(rows, angle_referenced, [&](const std::vector<RippleChannel<Real>>& channels) {
+      report = process_long(configs_[0], states_[0], channels[0], options);
+    });
+    return {std::move(given[0]), report};
+  }
+
+  [[nodiscard]] std::vector<CountsByName> counters() const {
+    calls_.wait();
+    std::vector<CountsByName> counts;
+    counts.reserve(states_.size());
+    for (const State& state : states_) {
+      counts.push_back(counts_by_name(state.counters));
+    }
+    return counts;
+  }
+
+ private:
+  template <class Filter>
+  std::vector<RippleGiven<Real>> run(const Rows& rows, bool angle_referenced,
+                                     const Filter& filter) {
+    require_same_length("rows", rows.size(), "configs", configs_.size());
+    std::vector<RippleChannel<Real>> channels(rows.size());
+    std::vector<RippleResultRow<Real>> results;
+    results.reserve(rows.size());
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      const auto& [time_s, angle_rad, torque_Nm, expected_Nm] = rows[i];
+      const std::size_t size = torque_Nm.shape(0);
+      require_same_length("time_s", time_s.shape(0), "torque_Nm", size);
+      require_same_length("motor_angle_rad", angle_rad.shape(0), "torque_Nm", size);
+      if (expected_Nm) {
+        require_same_length("expected_torque_Nm", expected_Nm->shape(0), "torque_Nm", size);
+      }
+      RippleResultRow<Real>& result = results.emplace_back(size);
+      RippleChannel<Real>& channel = channels[i];
+      channel.sample_count = size;
+      channel.measured_torque_Nm = torque_Nm.data();
+      channel.motor_angle_rad = angle_rad.data();
+      channel.expected_torque_Nm = expected_Nm ? expected_Nm->data() : nullptr;
+      channel.angle_referenced = angle_referenced;
+      channel.output(RippleOutput::torque) = result.torque_Nm.data();
+      channel.output(RippleOutput::ripple) = result.ripple_Nm.data();
+      channel.status = result.status.data();
+    }
+    {
+      const CallLock::Long running(calls_);
+      std::vector<Stamped<Real>> stamps;
+      stamps.reserve(rows.size());
+      for (std::size_t i = 0; i < rows.size(); ++i) {
+        stamps.push_back(
+            stamped<Real>(clocks_[i], std::get<0>(rows[i]).data(), channels[i].sample_count));
+        channels[i].interval_s = stamps.back().interval_s.data();
+      }
+      filter(channels);
+      for (std::size_t i = 0; i < rows.size(); ++i) {
+        for (const auto& [k, status] : stamps[i].remarks) {
+          channels[i].status[k] |= status;
+        }
+      }
+    }
+    std::vector<RippleGiven<Real>> given;
+    given.reserve(results.size());
+    for (RippleResultRow<Real>& result : results) {
+      given.emplace_back(result.torque_Nm.give(), result.ripple_Nm.give(), result.status.give());
+    }
+    return given;
+  }
+
+  std::vector<Config> configs_;
+  std::vector<State> states_;
+  std::vector<SampleClock> clocks_;
+  CallLock calls_;
+};
+
+template <class Real>
+void bind_precision(nb::module_& m, const char* name) {
+  using Batch = RippleBatch<Real>;
+  nb::class_<Batch>(m, name, "Ripple filters side by side, each with its own state.")
+      .def(nb::init<const std::vector<RippleConfigD>&>(), "configs"_a)
+      .def("reset", &Batch::reset, "Back to the start.")
+      .def("process", &Batch::process, "rows"_a, "angle_referenced"_a, "level"_a, "threads"_a,
+           "For each channel (time_s, motor_angle_rad, torque_Nm, expected_torque_Nm or None); "
+           "returns torque, ripple and status of each.")
+      .def(
+          "process_long",
+          [](Batch& self, const typename Batch::Rows& rows, bool angle_referenced,
+             VectorLevel level, std::size_t threads, bool in_sequence, double warm_up_memories,
+             double tolerance_Nm, double state_tolerance_Nm) {
+            const LongOptions options = {.batch = {.level = level, .thread_count = threads},
+                                         .in_sequence = in_sequence,
+                                         .warm_up_memories = warm_up_memories,
+                                         .tolerance_Nm = tolerance_Nm,
+                                         .state_tolerance_Nm = state_tolerance_Nm};
+            return self.process_one(rows, angle_referenced, options);
+          },
+          "rows"_a, "angle_referenced"_a, "level"_a, "threads"_a, "in_sequence"_a,
+          "warm_up_memories"_a, "tolerance_Nm"_a, "state_tolerance_Nm"_a,
+          "One channel's long log in time chunks.")
+      .def_prop_ro("counters", &Batch::counters,
+                   "For each channel: how often each status flag was raised.");
+}
+
+}  // namespace
+
+void bind_batch_ripple(nb::module_& m) {
+  bind_precision<double>(m, "RippleBatchFloat64");
+  bind_precision<float>(m, "RippleBatchFloat32");
+}
+
+}  // namespace strainwave::bindings
