@@ -262,6 +262,7 @@ class RippleBlockRun {
              .expected_torque_Nm = zero_row<Real>,
              .expected_stride = 0,
              .status = has_status_ ? status_.values : nullptr,
+             .first_sample = at_,
              .sample_count = count};
     gather_rest(count);
     for (std::size_t i = 0; i < ripple_outputs; ++i) {

@@ -111,6 +111,9 @@ STRAINWAVE_KERNEL void convert_angles(const double* angle_rad,
   }
 }
 
+/// How often an order's lanes move their frames together.
+inline constexpr std::size_t samples_between_moves = 16;
+
 /// One group of lanes at one sample.
 template <class Real, std::size_t Pairs>
 struct RippleGroup {
@@ -300,37 +303,42 @@ struct RippleGroup {
     (enter_pair<P>(), ...);
   }
 
-  /// follow() and enter_frame() of ripple_covariance.hpp.
+  /// follow() and enter_frame() of ripple_covariance.hpp.  Lanes that will have to move soon do so
+  /// together, an order at a time, at samples that none of them has a part in choosing: one after
+  /// the other they would move at every few samples, and a lane shall not depend on another one.
   STRAINWAVE_INLINE void enter_frame() {
-    if ((is_any_too_far(by_pair) & usual).any()) [[unlikely]] {
-      follow();
+    const std::size_t turn = (tile.first_sample + k) % samples_between_moves;
+    if (turn < memory.order_count) {
+      follow(turn, L(Real(0.5)), usual);
+    } else if ((is_any_too_far(by_pair) & usual).any()) [[unlikely]] {
+      Mask left = usual;
+      for (std::size_t a = 0; a < memory.order_count; ++a) {
+        left = left & !follow(a, L(Real(1)), left);
+      }
     }
     enter_pairs(by_pair);
   }
 
-  /// Where one lane has to move, all others of the order move along: that costs nothing, and one
-  /// after the other they would move at every few samples.
-  STRAINWAVE_INLINE void follow() const {
-    for (std::size_t a = 0; a < memory.order_count; ++a) {
-      const RippleOrderLayout& order = memory.orders[a];
-      L steps[3];
-      Mask too_far = none();
-      for (std::size_t t = 0; t < order.terms; ++t) {
-        const std::size_t pair = order.first_pair + 1 + t;
-        const L step = factors[memory.factor_of[pair]] - load(memory.frames[pair]);
-        too_far = too_far | (absolute(step) > L(memory.widest_offset[pair]));
-        steps[t] = select(usual, step, L(Real(0)));
-      }
-      if ((too_far & usual).any()) {
-        for (std::size_t t = 0; t < order.terms; ++t) {
-          Real* const frame = memory.frames[order.first_pair + 1 + t];
-          store(load(frame) + steps[t], frame);
-        }
-        move_row(2 * order.first_pair, order.terms, steps);
-        move_row(2 * order.first_pair + 1, order.terms, steps);
-        return;
-      }
+  /// Moves the lanes, of those given, whose factors are beyond a share of the widest offset.
+  STRAINWAVE_INLINE Mask follow(std::size_t a, L share, Mask lanes) const {
+    const RippleOrderLayout& order = memory.orders[a];
+    L steps[3];
+    Mask too_far = none();
+    for (std::size_t t = 0; t < order.terms; ++t) {
+      const std::size_t pair = order.first_pair + 1 + t;
+      steps[t] = factors[memory.factor_of[pair]] - load(memory.frames[pair]);
+      too_far = too_far | (absolute(steps[t]) > share * L(memory.widest_offset[pair]));
     }
+    too_far = too_far & lanes;
+    if (too_far.any()) {
+      for (std::size_t t = 0; t < order.terms; ++t) {
+        steps[t] = select(too_far, steps[t], L(Real(0)));
+        add_to(memory.frames[order.first_pair + 1 + t], steps[t]);
+      }
+      move_row(2 * order.first_pair, order.terms, steps);
+      move_row(2 * order.first_pair + 1, order.terms, steps);
+    }
+    return too_far;
   }
 
   /// move_row() of ripple_covariance.hpp, and the ripple of the order itself.

@@ -124,6 +124,7 @@ struct RippleTile {
   std::size_t expected_stride = block_width<Real>;
   Real* outputs[ripple_outputs] = {};
   Real* status = nullptr;  ///< as numbers, which hold them exactly
+  std::size_t first_sample = 0;  ///< since the call began
   std::size_t sample_count = 0;
 };
 
