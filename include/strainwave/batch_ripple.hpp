@@ -36,8 +36,8 @@ template <class Real>
 struct RippleChannel {
   std::size_t sample_count = 0;
   const Real* measured_torque_Nm = nullptr;
-  const double* motor_angle_rad = nullptr;   ///< not wrapped; NaN where it is not known
-  const Real* interval_s = nullptr;          ///< null: sample_period_s throughout
+  const double* motor_angle_rad = nullptr;  ///< not wrapped; NaN where it is not known
+  const Real* interval_s = nullptr;         ///< null: sample_period_s throughout
   Real sample_period_s = Real(1e-3);
   const Real* expected_torque_Nm = nullptr;  ///< null: 0 throughout
   bool angle_referenced = true;              ///< false: from an unknown zero, frozen terms wait
@@ -414,9 +414,8 @@ class RippleBlockRun {
     state.speed_rad_s = lanes_.new_speed_rad_s[lane];
     state.time_since_phase_s = Real(0);
     const Real offset_rad = torque_offset_rad(config, state);
-    const Phase phase = offset_rad == Real(0)
-                            ? now.motor_phase
-                            : now.motor_phase + phase_from_radians(offset_rad);
+    const Phase phase =
+        offset_rad == Real(0) ? now.motor_phase : now.motor_phase + phase_from_radians(offset_rad);
     lanes_.rotation_rad[lane] = to_radians<Real>(phase - state.learned_phase);
     state.learned_phase = phase;
     for (std::size_t a = 0; a < config.order_count; ++a) {
@@ -533,8 +532,7 @@ void process_batch(std::span<const RippleFilterConfig<Real, MaxPairs>> configs,
     kinds.push_back(detail::kind_of(config));
   }
   const std::vector<std::size_t> order = detail::sorted_channels(kinds, channels);
-  const std::vector<std::size_t> starts =
-      detail::block_starts(kinds, order, block_width<Real>);
+  const std::vector<std::size_t> starts = detail::block_starts(kinds, order, block_width<Real>);
   detail::for_each_part(starts.size() - 1, options.thread_count, [&](std::size_t part) {
     const detail::RippleKind& kind = kinds[order[starts[part]]];
     const bool on_lanes = kind.pairs != 0 && options.level != VectorLevel::one_by_one;

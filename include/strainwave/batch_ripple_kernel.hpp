@@ -60,7 +60,8 @@ STRAINWAVE_INLINE CosSin<Lanes<Real>> cos_sin_of_fraction(WholeLanes<Real> fract
   constexpr typename LaneVectors<Real>::Whole eighth = 1 << 29;
   const Wholes quarters = wrapped<Real>(fraction + eighth) >> 30;
   const Wholes rest = wrapped<Real>(fraction - (quarters << 30));
-  const CosSin<L> part = cos_sin_reduced(to_lanes<Real>(rest) * L(two_pi<Real> / Real(4294967296.0)));
+  const CosSin<L> part =
+      cos_sin_reduced(to_lanes<Real>(rest) * L(two_pi<Real> / Real(4294967296.0)));
   const Wholes odd = -(quarters & 1);
   constexpr int sign_shift = 8 * static_cast<int>(sizeof(Real)) - 2;
   const Wholes sine_sign = (quarters & 2) << sign_shift;
@@ -76,9 +77,8 @@ STRAINWAVE_INLINE CosSin<Lanes<Real>> cos_sin_of_fraction(WholeLanes<Real> fract
 /// Angles of one channel as nearest turns and fraction; turns that no lane takes where they are out
 /// of reach.
 template <class Real>
-STRAINWAVE_KERNEL void convert_angles(const double* angle_rad,
-                                                             std::size_t count, Real* turns,
-                                                             Real* fraction) {
+STRAINWAVE_KERNEL void convert_angles(const double* angle_rad, std::size_t count, Real* turns,
+                                      Real* fraction) {
   using Whole = typename LaneVectors<Real>::Whole;
   using Wide = Lanes<double>;
   using Wides = LaneVectors<double>::Wholes;
@@ -101,8 +101,7 @@ STRAINWAVE_KERNEL void convert_angles(const double* angle_rad,
     const Wide units = (in_turns - (whole - rounder)) * Wide(4294967296.0) + rounder;
     const auto reachable = absolute(in_turns) < Wide(static_cast<double>(detail::most_lane_turns));
     const Wide taken = select(reachable, whole, rounder - Wide(2147483648.0));
-    const auto low_turns =
-        __builtin_convertvector(reinterpret_cast<Wides>(taken.v), Low);
+    const auto low_turns = __builtin_convertvector(reinterpret_cast<Wides>(taken.v), Low);
     const auto low_units = __builtin_convertvector(reinterpret_cast<Wides>(units.v), Low);
     const Narrow turns_here = __builtin_convertvector(low_turns, Narrow);
     const Narrow units_here = __builtin_convertvector(low_units, Narrow);
@@ -158,8 +157,7 @@ struct RippleGroup {
   static constexpr auto by_coefficient = std::make_index_sequence<coefficients>{};
 
   STRAINWAVE_INLINE RippleGroup(Memory& memory_of, const RippleTile<Real>& tile_of,
-                                const RippleAlone& alone_of, std::size_t lane_of,
-                                std::size_t k_of)
+                                const RippleAlone& alone_of, std::size_t lane_of, std::size_t k_of)
       : memory(memory_of), tile(tile_of), alone(alone_of), lane(lane_of), k(k_of) {}
 
   STRAINWAVE_INLINE static Mask none() { return L(Real(1)) <= L(Real(0)); }
@@ -201,11 +199,11 @@ struct RippleGroup {
             (absolute(rotation_rad) <=
              L(static_cast<Real>(detail::largest_motor_speed_rad_s)) * interval_s);
     const L measured_Nm = load(memory.measured_Nm);
-    const Mask held =
-        (absolute(rotation_rad) <= L(Real(0))) & (torque_Nm <= measured_Nm) &
-        (measured_Nm <= torque_Nm) & (interval_s < L(static_cast<Real>(detail::longest_hold_s))) &
-        (absolute(old_speed_rad_s) * interval_s >=
-         L(static_cast<Real>(detail::least_travel_of_a_held_sample_rad)));
+    const Mask held = (absolute(rotation_rad) <= L(Real(0))) & (torque_Nm <= measured_Nm) &
+                      (measured_Nm <= torque_Nm) &
+                      (interval_s < L(static_cast<Real>(detail::longest_hold_s))) &
+                      (absolute(old_speed_rad_s) * interval_s >=
+                       L(static_cast<Real>(detail::least_travel_of_a_held_sample_rad)));
     usual = usual & !held;
     const L speed_now_rad_s = rotation_rad * load(memory.per_interval);
     speed_rad_s =
@@ -350,7 +348,8 @@ struct RippleGroup {
     for (std::size_t t = 0; t < terms; ++t) {
       const std::size_t i = b + 2 * (t + 1);
       for (std::size_t j = 0; j < coefficients; ++j) {
-        moved[j] = fused(steps[t], load(memory.covariance_Nm2[detail::lane_element(i, j)]), moved[j]);
+        moved[j] =
+            fused(steps[t], load(memory.covariance_Nm2[detail::lane_element(i, j)]), moved[j]);
       }
       add_to(memory.torque_row_Nm2[b], steps[t] * load(memory.torque_row_Nm2[i]));
       add_to(memory.coefficients_Nm[b], steps[t] * load(memory.coefficients_Nm[i]));
@@ -531,8 +530,7 @@ struct RippleGroup {
     const L beyond = one_where(absolute(innovation_Nm) > old_Nm);
     const L change = L(static_cast<Real>(detail::scale_rate_per_rad)) * travel_rad *
                      (beyond - L(static_cast<Real>(detail::share_beyond_scale)));
-    const L scale_Nm =
-        old_Nm * fused(change, fused(L(Real(0.5)), change, L(Real(1))), L(Real(1)));
+    const L scale_Nm = old_Nm * fused(change, fused(L(Real(0.5)), change, L(Real(1))), L(Real(1)));
     store(select(moving, larger(scale_Nm, load(memory.least_scale_Nm)), old_Nm),
           memory.innovation_scale_Nm);
   }
@@ -577,10 +575,14 @@ struct RippleGroup {
   STRAINWAVE_INLINE void add(std::size_t i, std::size_t j, L value_Nm2) const {
     add_to(memory.covariance_Nm2[detail::lane_element(i, j)], value_Nm2);
   }
-  STRAINWAVE_INLINE Mask is_beyond(std::size_t i, L limit_Nm2) const {
-    return load(memory.covariance_Nm2[detail::lane_element(i, i)]) +
-               load(memory.covariance_Nm2[detail::lane_element(i + 1, i + 1)]) >
-           L(Real(2)) * limit_Nm2;
+  /// share_of_noise() of ripple_covariance.hpp; lanes that are given nothing are remembered.
+  STRAINWAVE_INLINE L share_of_noise(std::size_t i, L half_per_limit) {
+    const L variances_Nm2 = load(memory.covariance_Nm2[detail::lane_element(i, i)]) +
+                            load(memory.covariance_Nm2[detail::lane_element(i + 1, i + 1)]);
+    const L share = L(Real(1)) - variances_Nm2 * half_per_limit;
+    const Mask some = share > L(Real(0));
+    limited = limited | !some;
+    return select(some, share, L(Real(0)));
   }
 
   /// add_noise() of ripple_covariance.hpp: for further pairs, then for first ones.
@@ -594,9 +596,8 @@ struct RippleGroup {
       return;
     }
     const L factor = load(memory.frames[P]);
-    const Mask beyond = is_beyond(i, load(memory.limit_Nm2));
-    limited = limited | beyond;
-    const L its_Nm2 = select(beyond, L(Real(0)), gained_Nm2[memory.order_of[P]]);
+    const L its_Nm2 =
+        gained_Nm2[memory.order_of[P]] * share_of_noise(i, load(memory.half_per_limit));
     const L with_first_Nm2 = factor * its_Nm2;
     add(i, 2 * first, with_first_Nm2);
     add(i + 1, 2 * first + 1, with_first_Nm2);
@@ -609,10 +610,8 @@ struct RippleGroup {
   STRAINWAVE_INLINE void add_to_first(const L* gained_Nm2, const L* weights, const L* sums_Nm2) {
     constexpr std::size_t i = 2 * P;
     if (memory.factor_of[P] == 0) {
-      const Mask beyond = is_beyond(i, weights[P] * load(memory.limit_Nm2));
-      limited = limited | beyond;
-      const L sum_Nm2 =
-          sums_Nm2[P] + select(beyond, L(Real(0)), gained_Nm2[memory.order_of[P]]);
+      const L share = share_of_noise(i, load(memory.half_per_limit) / weights[P]);
+      const L sum_Nm2 = fused(gained_Nm2[memory.order_of[P]], share, sums_Nm2[P]);
       add(i, i, sum_Nm2);
       add(i + 1, i + 1, sum_Nm2);
     }
@@ -712,8 +711,8 @@ struct RippleGroup {
 
 /// A tile through all lanes of a block.
 template <class Real, std::size_t Pairs>
-STRAINWAVE_KERNEL void filter_ripple_tile(RippleLanes<Real, Pairs>& memory, const RippleTile<Real>& tile,
-                               const RippleAlone& alone) {
+STRAINWAVE_KERNEL void filter_ripple_tile(RippleLanes<Real, Pairs>& memory,
+                                          const RippleTile<Real>& tile, const RippleAlone& alone) {
   using Group = RippleGroup<Real, Pairs>;
   for (std::size_t lane = 0; lane < block_width<Real>; lane += Lanes<Real>::count) {
     for (std::size_t k = 0; k < tile.sample_count; ++k) {

@@ -47,7 +47,7 @@ struct alignas(64) RippleLanes {
   Row kept[Pairs];  ///< 1 for an order that stays in the torque
   Row noise_Nm2;    ///< R
   Row walk_Nm2_per_s;
-  Row limit_Nm2;
+  Row half_per_limit;  ///< 1 / (2 P0), P0 the coefficients' first variance, 1/Nm^2
   Row per_rated_torque;
   Row per_reference_speed;
   Row per_memory_square;  ///< 1 / (2 pi n)^2
@@ -58,7 +58,7 @@ struct alignas(64) RippleLanes {
   // State.
   Row torque_state_Nm;
   Row coefficients_Nm[coefficients];  ///< an order's first pair: its ripple in the frame
-  Row frames[Pairs];  ///< factor of each further pair; 0 for the others
+  Row frames[Pairs];                  ///< factor of each further pair; 0 for the others
   Row covariance_Nm2[coefficients * (coefficients + 1) / 2];
   Row torque_row_Nm2[coefficients];
   Row torque_variance_Nm2;
@@ -123,7 +123,7 @@ struct RippleTile {
   const Real* expected_torque_Nm = nullptr;
   std::size_t expected_stride = block_width<Real>;
   Real* outputs[ripple_outputs] = {};
-  Real* status = nullptr;  ///< as numbers, which hold them exactly
+  Real* status = nullptr;        ///< as numbers, which hold them exactly
   std::size_t first_sample = 0;  ///< since the call began
   std::size_t sample_count = 0;
 };
@@ -137,7 +137,8 @@ struct RippleAlone {
   /// They come back with the results.
   void (*come_back)(void* block, std::size_t lane, std::size_t lanes, std::size_t sample) = nullptr;
   /// Lanes with angles of their own find them.
-  void (*find_angles)(void* block, std::size_t lane, std::size_t lanes, std::size_t sample) = nullptr;
+  void (*find_angles)(void* block, std::size_t lane, std::size_t lanes,
+                      std::size_t sample) = nullptr;
 };
 
 namespace detail {
@@ -173,8 +174,7 @@ template <class Real, std::size_t MaxPairs>
 [[nodiscard]] constexpr bool is_in_step(const RippleFilterConfig<Real, MaxPairs>& config,
                                         const RippleFilterState<Real, MaxPairs>& state) {
   const std::int64_t turns = nearest_turns(state.last_phase);
-  const bool alike =
-      has_own_angle(config) || state.learned_phase == state.last_phase;
+  const bool alike = has_own_angle(config) || state.learned_phase == state.last_phase;
   return state.phase_known && state.torque_known && state.learned_phase_known && alike &&
          state.time_since_phase_s <= Real(0) && state.time_since_update_s <= Real(0) &&
          state.typical_interval_s > Real(0) && reaches_back(config, state) &&
@@ -223,7 +223,8 @@ inline void put_config(RippleLanes<Real, Pairs>& lanes, std::size_t lane,
   const Real per_memory_rad = Real(1) / (two_pi<Real> * config.memory_turns);
   lanes.noise_Nm2[lane] = config.torque_noise_Nm * config.torque_noise_Nm;
   lanes.walk_Nm2_per_s[lane] = config.torque_walk_Nm_per_sqrt_s * config.torque_walk_Nm_per_sqrt_s;
-  lanes.limit_Nm2[lane] = config.initial_amplitude_Nm * config.initial_amplitude_Nm;
+  lanes.half_per_limit[lane] =
+      Real(0.5) / (config.initial_amplitude_Nm * config.initial_amplitude_Nm);
   lanes.per_rated_torque[lane] = Real(1) / config.rated_torque_Nm;
   lanes.per_reference_speed[lane] = Real(1) / config.reference_speed_rad_s;
   lanes.per_memory_square[lane] = per_memory_rad * per_memory_rad;

@@ -30,8 +30,7 @@ template <class Real, std::size_t MaxPairs>
 [[nodiscard]] inline std::size_t warm_up_before(const RippleFilterConfig<Real, MaxPairs>& config,
                                                 const RippleChannel<Real>& channel,
                                                 std::size_t start, double memories) {
-  const double slowness =
-      pair_count(config) > config.order_count ? slowness_of_further_pairs : 1.0;
+  const double slowness = pair_count(config) > config.order_count ? slowness_of_further_pairs : 1.0;
   const double needed_rad =
       memories * slowness * two_pi<double> * static_cast<double>(config.memory_turns);
   const auto least_rad_s = static_cast<double>(config.minimum_speed_rad_s);
@@ -104,9 +103,9 @@ template <class Real, std::size_t MaxPairs>
 /// How far two states of the same filter lie apart: the ripple at any angle, at the first one's
 /// load and speed, and the coefficient that differs most.
 template <class Real, std::size_t MaxPairs>
-[[nodiscard]] inline StateDifference difference_of(
-    const RippleFilterConfig<Real, MaxPairs>& config, const RippleFilterState<Real, MaxPairs>& a,
-    const RippleFilterState<Real, MaxPairs>& b) {
+[[nodiscard]] inline StateDifference difference_of(const RippleFilterConfig<Real, MaxPairs>& config,
+                                                   const RippleFilterState<Real, MaxPairs>& a,
+                                                   const RippleFilterState<Real, MaxPairs>& b) {
   const auto apart_Nm = [&](std::size_t i) {
     return static_cast<double>(a.states_Nm[1 + i]) - static_cast<double>(b.states_Nm[1 + i]);
   };
@@ -200,9 +199,9 @@ template <class Real, std::size_t MaxPairs>
     return 1;
   }
   const std::size_t threads = std::max<std::size_t>(options.batch.thread_count, 1);
-  const std::size_t warm_up = std::max(
-      warm_up_before(config, channel, channel.sample_count / 2, options.warm_up_memories),
-      warm_up_before(config, channel, channel.sample_count, options.warm_up_memories));
+  const std::size_t warm_up =
+      std::max(warm_up_before(config, channel, channel.sample_count / 2, options.warm_up_memories),
+               warm_up_before(config, channel, channel.sample_count, options.warm_up_memories));
   const std::size_t most = channel.sample_count / std::max(2 * warm_up, 2 * tile_samples);
   return std::min(block_width<Real> * blocks_per_thread * threads, most);
 }

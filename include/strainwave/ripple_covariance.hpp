@@ -235,8 +235,8 @@ constexpr void move_frame(RippleCovariance<Real, MaxPairs>& p, Count count, std:
 template <class Real, std::size_t MaxPairs>
 [[nodiscard]] constexpr Real share_of_noise(const RippleCovariance<Real, MaxPairs>& p,
                                             std::size_t i, Real limit_Nm2) {
-  const Real share = Real(1) - (element_of(p, i, i) + element_of(p, i + 1, i + 1)) *
-                                   (Real(0.5) / limit_Nm2);
+  const Real share =
+      Real(1) - (element_of(p, i, i) + element_of(p, i + 1, i + 1)) * (Real(0.5) / limit_Nm2);
   return share > Real(0) ? share : Real(0);
 }
 

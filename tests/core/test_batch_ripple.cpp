@@ -104,9 +104,7 @@ struct Log {
     channel.status = status.data() + start;
     return channel;
   }
-  [[nodiscard]] strainwave::RippleChannel<Real> channel() {
-    return channel(0, torque_Nm.size());
-  }
+  [[nodiscard]] strainwave::RippleChannel<Real> channel() { return channel(0, torque_Nm.size()); }
 };
 
 /// A joint that turns both ways, rests, is loaded, and touches something.
@@ -125,8 +123,9 @@ Log<Real> quiet_log(std::size_t number, std::size_t samples) {
     const double load_Nm = 15.0 * std::sin(3.0 * time_s + static_cast<double>(number)) +
                            (k % 1100 > 1000 ? 20.0 : 0.0);
     log.angle_rad.push_back(angle_rad);
-    log.torque_Nm.push_back(static_cast<Real>(
-        load_Nm + (1.0 + 0.02 * load_Nm) * example_ripple_Nm(angle_rad) + 0.04 * random.gaussian()));
+    log.torque_Nm.push_back(
+        static_cast<Real>(load_Nm + (1.0 + 0.02 * load_Nm) * example_ripple_Nm(angle_rad) +
+                          0.04 * random.gaussian()));
   }
   for (auto& output : log.outputs) {
     output.assign(samples, Real(-99));
@@ -312,8 +311,8 @@ double rms_difference_Nm(const Log<Real>& a, const Log<Real>& b) {
   const auto torque = static_cast<std::size_t>(RippleOutput::torque);
   double squares_Nm2 = 0.0;
   for (std::size_t k = 0; k < a.status.size(); ++k) {
-    const double apart_Nm = static_cast<double>(a.outputs[torque][k]) -
-                            static_cast<double>(b.outputs[torque][k]);
+    const double apart_Nm =
+        static_cast<double>(a.outputs[torque][k]) - static_cast<double>(b.outputs[torque][k]);
     squares_Nm2 += apart_Nm * apart_Nm;
   }
   return std::sqrt(squares_Nm2 / static_cast<double>(a.status.size()));

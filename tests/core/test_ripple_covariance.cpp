@@ -279,8 +279,8 @@ TYPED_TEST(RippleCovarianceOf, APairGainsTheLessTheLessItIsKnown) {
     for (std::size_t i = 3; i <= 7; i += 2) {
       add(i, its.dense[i][i] + its.dense[i + 1][i + 1], 2.0 * limit_Nm2);
     }
-    const bool limited = strainwave::detail::add_noise(its.p, 0, 0, 3, Real(0.02),
-                                                       static_cast<Real>(limit_Nm2));
+    const bool limited =
+        strainwave::detail::add_noise(its.p, 0, 0, 3, Real(0.02), static_cast<Real>(limit_Nm2));
     EXPECT_EQ(limited, nothing > 0);
     EXPECT_EQ(limited, of_mean < 1.0);
     its.expect_dense("given");

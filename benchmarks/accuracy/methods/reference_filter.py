@@ -241,9 +241,9 @@ class _ProcessNoise:
         shares = 1 - variances / most
         for order in dict.fromkeys(self._orders):
             terms = np.flatnonzero(self._orders == order)
-            factors = np.sign(h[1 + 2 * terms] * h[1 + 2 * terms[0]] + h[2 + 2 * terms] * h[
-                2 + 2 * terms[0]
-            ]) * np.sqrt(squares[terms])
+            factors = np.sign(
+                h[1 + 2 * terms] * h[1 + 2 * terms[0]] + h[2 + 2 * terms] * h[2 + 2 * terms[0]]
+            ) * np.sqrt(squares[terms])
             ripple = sum(
                 factors @ P[np.ix_(side + 2 * terms, side + 2 * terms)] @ factors for side in (1, 2)
             )

@@ -120,8 +120,7 @@ class Dense:
                 added[i : i + 2] = each * max(0.0, 1 - (variances[i] + variances[i + 1]) / most)
             factors = h[rows[0::2]] / h[rows[0]]
             ripple = sum(
-                factors @ self.P[np.ix_(rows[side::2], rows[side::2])] @ factors
-                for side in (0, 1)
+                factors @ self.P[np.ix_(rows[side::2], rows[side::2])] @ factors for side in (0, 1)
             )
             added[rows[:2]] = each * max(0.0, 1 - ripple / (seen * most))
         self.P += np.diag(added)
