@@ -223,9 +223,10 @@ class OwnedFilter {  // not Filter: nanobind tells types apart by name, also in 
         [&](const auto& instance) {
           for (std::size_t i = 0; i < count; ++i) {
             states.data()[i] = static_cast<double>(instance.state.states_Nm[i]);
-            for (std::size_t j = 0; j < count; ++j) {
-              covariance[i * count + j] = static_cast<double>(detail::covariance_of(
-                  instance.config, instance.state.covariance, count - 1, i, j));
+            for (std::size_t j = 0; j <= i; ++j) {
+              covariance[i * count + j] = covariance[j * count + i] =
+                  static_cast<double>(detail::covariance_of(
+                      instance.config, instance.state.covariance, count - 1, i, j));
             }
           }
         },

@@ -85,7 +85,7 @@ def _row(each: Implementation) -> dict[str, Any]:
 
 
 def _agrees(each: Implementation, worker: Worker, row: dict[str, Any], setting: Setting) -> bool:
-    reference = setting.references[each.filter]
+    reference = setting.references[each.reference]
     ripple = worker.ripple_Nm(len(reference), setting.inputs)
     found = agreement(each.filter, each.precision, ripple, reference)
     row["version"] = worker.version

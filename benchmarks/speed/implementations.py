@@ -48,6 +48,12 @@ class Implementation:
         """What it is called across filters."""
         return f"{self.filter}_{self.name}"
 
+    @property
+    def reference(self) -> str:
+        """What it has to agree with: the peers do not hold variances to their limit."""
+        is_peer = self.program == "peers" or self.name.startswith("eigen")
+        return "default_unlimited" if is_peer and self.filter == "default" else self.filter
+
 
 def _peers(which: str, *names: tuple[str, str, str]) -> tuple[Implementation, ...]:
     return tuple(

@@ -92,7 +92,7 @@ def turning(motor_speed_rad_s: float) -> Array:
     return matrix
 
 
-def default_ripple(recording: Recording, samples: int) -> Array:
+def default_ripple(recording: Recording, samples: int, *, limited: bool = True) -> Array:
     """Run the default filter as the accuracy bench's independent implementation has it.
 
     Parameters
@@ -101,6 +101,8 @@ def default_ripple(recording: Recording, samples: int) -> Array:
         Signals.
     samples : int
         How many of them.
+    limited : bool
+        Whether a pair gains the less process noise the less it is known. The peers go without.
 
     Returns
     -------
@@ -108,7 +110,7 @@ def default_ripple(recording: Recording, samples: int) -> Array:
         Ripple predicted from the samples before, Nm, shape (samples,).
     """
     return reference_filter(
-        DEFAULT_SETTINGS,
+        replace(DEFAULT_SETTINGS, variance_limited=limited),
         recording.time_s[:samples],
         recording.motor_angle_rad[:samples],
         recording.torque_Nm[:samples],

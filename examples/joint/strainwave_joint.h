@@ -6,7 +6,7 @@
 #define STRAINWAVE_JOINT_H
 
 #define STRAINWAVE_GAUGES 4
-#define STRAINWAVE_STATE_BYTES 1512
+#define STRAINWAVE_STATE_BYTES 1496
 #define STRAINWAVE_LEARNED_WORDS 40
 
 #include "strainwave/strainwave.h"

@@ -185,16 +185,22 @@ def reference_filter(
         innovation = rest_Nm - state[0]
         _update(settings, state, P, h, innovation, scale_Nm, moves=moves)
         if moves:
-            beyond = float(abs(innovation) > scale_Nm)
-            rate = settings.scale_rate_per_rad * min(abs(turned), 3.0)
-            scale_Nm *= np.exp(rate * (beyond - SHARE_BEYOND_SCALE))
-            scale_Nm = max(scale_Nm, LEAST_SCALE * settings.torque_noise_Nm)
+            scale_Nm = _next_scale(settings, scale_Nm, innovation, turned)
         if moves and settings.noise_after:
             noise.add(P, h, turned, dt)
         noise.take_interval(dt)
         torque_state[n] = state[0] + expected[n]
         load_Nm += dt / (dt + LOAD_SMOOTHING_S) * (torque_Nm[n] - ripple[n] - load_Nm)
     return ReferenceResult(torque_Nm - ripple, ripple, torque_state, state[1:].copy())
+
+
+def _next_scale(
+    settings: ReferenceSettings, scale_Nm: float, innovation_Nm: float, turned_rad: float
+) -> float:
+    beyond = float(abs(innovation_Nm) > scale_Nm)
+    rate = settings.scale_rate_per_rad * min(abs(turned_rad), 3.0)
+    next_Nm = scale_Nm * float(np.exp(rate * (beyond - SHARE_BEYOND_SCALE)))
+    return max(next_Nm, LEAST_SCALE * settings.torque_noise_Nm)
 
 
 class _ProcessNoise:
