@@ -165,7 +165,7 @@ template <class Real, std::size_t Orders, std::size_t MaxOrders>
 inline void take_state(const OscillatorLanes<Real, Orders>& lanes, std::size_t lane,
                        const OscillatorFilterConfig<Real, MaxOrders>& config,
                        OscillatorFilterState<Real, MaxOrders>& state) {
-  using Fraction = typename OscillatorFilterState<Real, MaxOrders>::Fraction;
+  using Fraction = OscillatorFilterState<Real, MaxOrders>::Fraction;
   using Signed = std::make_signed_t<Fraction>;
   const std::size_t count = 2 * active_orders(config);
   for (std::size_t i = 0; i < count; ++i) {

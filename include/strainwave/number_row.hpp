@@ -34,8 +34,8 @@ inline constexpr std::size_t register_bytes = 16;
 template <class Real, std::size_t Count>
 struct OneRegister {
   using Index = std::conditional_t<sizeof(Real) == 4, std::int32_t, std::int64_t>;
-  typedef Real Vector __attribute__((vector_size(Count * sizeof(Real))));
-  typedef Index Indices __attribute__((vector_size(Count * sizeof(Real))));
+  using Vector [[gnu::vector_size(Count * sizeof(Real))]] = Real;
+  using Indices [[gnu::vector_size(Count * sizeof(Real))]] = Index;
 
   Vector values;
 

@@ -18,8 +18,10 @@ namespace strainwave::detail {
 /// option, so that objects compiled with different options agree on it.
 [[nodiscard]] constexpr std::size_t column_length(std::size_t states) {
 #if defined(__x86_64__) || defined(__aarch64__)
-  const std::size_t step = states <= 2 ? 2 : states <= 4 ? 4 : row_lane_count;
-  return (states + step - 1) / step * step;
+  if (states <= 4) {
+    return states <= 2 ? 2 : 4;
+  }
+  return (states + row_lane_count - 1) / row_lane_count * row_lane_count;
 #else
   return states;
 #endif

@@ -154,7 +154,7 @@ template <class Real, std::size_t MaxOrders>
 constexpr void turn_on(const OscillatorFilterConfig<Real, MaxOrders>& config,
                        OscillatorFilterState<Real, MaxOrders>& state, Real motor_turns,
                        bool short_of_a_cycle) {
-  using Fraction = typename OscillatorFilterState<Real, MaxOrders>::Fraction;
+  using Fraction = OscillatorFilterState<Real, MaxOrders>::Fraction;
   using Signed = std::make_signed_t<Fraction>;
   constexpr Real half_range = Real(2) * static_cast<Real>(Fraction{1} << (sizeof(Real) * 8 - 2));
   for (std::size_t a = 0; a < active_orders(config); ++a) {

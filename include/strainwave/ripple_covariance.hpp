@@ -93,7 +93,7 @@ constexpr void call_each(const Call& call) {
 constexpr void begin_anew() {
 #if defined(__GNUC__)
   if (!whole_rows && !std::is_constant_evaluated()) {
-    asm volatile("" : : : "memory");
+    asm volatile("" : : : "memory");  // NOLINT(*-no-assembler)
   }
 #endif
 }
