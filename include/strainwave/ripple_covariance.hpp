@@ -133,6 +133,7 @@ constexpr void set_element(RippleCovariance<Real, MaxPairs>& p, std::size_t row,
                            Real value_Nm2) {
   p.elements_Nm2[element_index(p, row, column)] = value_Nm2;
   if constexpr (whole_rows) {
+    // NOLINTNEXTLINE(readability-suspicious-call-argument): the other half
     p.elements_Nm2[element_index(p, column, row)] = value_Nm2;
   }
 }

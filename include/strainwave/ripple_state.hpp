@@ -88,7 +88,7 @@ constexpr void start_torque(const RippleFilterConfig<Real, MaxPairs>& config,
   for (Real& each : p.torque_row_Nm2) {
     each = Real(0);
   }
-  SeenCovariance<Real, MaxPairs> seen;
+  SeenCovariance<Real, MaxPairs> seen;  // NOLINT(*-member-init): filled by what follows
   follow(config, p, count, sample.terms);
   enter_frame(config, p, sample.terms, sample.waves, seen.h);
   see(p, count, seen);
@@ -239,7 +239,7 @@ constexpr Innovation<Real, MaxPairs> update_of(const RippleFilterConfig<Real, Ma
                                                Count count, Real innovation_Nm, bool moving) {
   RippleCovariance<Real, MaxPairs>& p = state.covariance;
   const Real noise_Nm2 = config.torque_noise_Nm * config.torque_noise_Nm;
-  SeenCovariance<Real, MaxPairs> seen;
+  SeenCovariance<Real, MaxPairs> seen;  // NOLINT(*-member-init): filled by what follows
   follow(config, p, count, sample.terms);
   enter_frame(config, p, sample.terms, sample.waves, seen.h);
   see(p, count, seen);
