@@ -51,8 +51,8 @@ Stamped<Real> stamped(SampleClock& clock, const double* time_s, std::size_t size
   for (std::size_t k = 0; k < size; ++k) {
     const Interval interval = take_stamp(clock, time_s[k]);
     const bool finite = !has(interval.status, StatusFlag::time_not_finite);
-    result.interval_s[k] = finite ? static_cast<Real>(interval.interval_s)
-                                  : std::numeric_limits<Real>::quiet_NaN();
+    result.interval_s[k] =
+        finite ? static_cast<Real>(interval.interval_s) : std::numeric_limits<Real>::quiet_NaN();
     if (interval.status != 0) {
       result.remarks.emplace_back(k, interval.status);
     }
@@ -65,8 +65,8 @@ class RippleBatch {
  public:
   using Config = RippleFilterConfig<Real, batch_pairs>;
   using State = RippleFilterState<Real, batch_pairs>;
-  using Rows = std::vector<std::tuple<Vector<double>, Vector<double>, Vector<Real>,
-                                      std::optional<Vector<Real>>>>;
+  using Rows = std::vector<
+      std::tuple<Vector<double>, Vector<double>, Vector<Real>, std::optional<Vector<Real>>>>;
 
   explicit RippleBatch(const std::vector<RippleConfigD>& configs) {
     for (const RippleConfigD& each : configs) {
@@ -89,8 +89,8 @@ class RippleBatch {
     clocks_.assign(configs_.size(), SampleClock{});
   }
 
-  std::vector<RippleGiven<Real>> process(const Rows& rows, bool angle_referenced,
-                                         VectorLevel level, std::size_t threads) {
+  std::vector<RippleGiven<Real>> process(const Rows& rows, bool angle_referenced, VectorLevel level,
+                                         std::size_t threads) {
     return run(rows, angle_referenced, [&](const std::vector<RippleChannel<Real>>& channels) {
       process_batch<Real, batch_pairs>(configs_, states_, channels,
                                        {.level = level, .thread_count = threads});

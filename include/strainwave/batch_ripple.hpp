@@ -205,7 +205,8 @@ class RippleBlockRun {
   void run() {
     const RippleAlone alone = {this, &RippleBlockRun::leave, &RippleBlockRun::come_back,
                                &RippleBlockRun::find_angles};
-    for (at_ = 0; const std::size_t count = next_count();) {
+    at_ = 0;
+    for (std::size_t count = next_count(); count > 0; count = next_count()) {
       gather_tile(count);
       kernel_.filter_tile(lanes_, tile_, alone);
       scatter_tile(count);
@@ -427,7 +428,7 @@ class RippleBlockRun {
     }
   }
 
-  const Block& block_;
+  const Block& block_;  // NOLINT(cppcoreguidelines-avoid-const-or-ref-data-members)
   RippleKernel<Real, Pairs> kernel_;
   Lanes lanes_ = {};
   RippleTile<Real> tile_ = {};

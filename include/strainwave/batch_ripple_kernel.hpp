@@ -13,7 +13,7 @@
   [[gnu::noinline, gnu::no_sanitize("address"), gnu::no_sanitize("undefined")]] inline
 
 template <class Real>
-using WholeLanes = typename LaneVectors<Real>::Wholes;
+using WholeLanes = LaneVectors<Real>::Wholes;
 
 template <class Real>
 STRAINWAVE_INLINE WholeLanes<Real> load_whole(const typename LaneVectors<Real>::Whole* from) {
@@ -52,12 +52,14 @@ STRAINWAVE_INLINE Lanes<Real> one_where(LaneMask<Real> mask) {
   return select(mask, Lanes<Real>(Real(1)), Lanes<Real>(Real(0)));
 }
 
+// NOLINTBEGIN(cppcoreguidelines-pro-type-reinterpret-cast): bits of vectors, as of lanes_level.hpp.
+
 /// Cosine and sine of fractions of a turn, either side of zero, in units of 2^-32.
 template <class Real>
 STRAINWAVE_INLINE CosSin<Lanes<Real>> cos_sin_of_fraction(WholeLanes<Real> fraction) {
   using L = Lanes<Real>;
   using Wholes = WholeLanes<Real>;
-  constexpr typename LaneVectors<Real>::Whole eighth = 1 << 29;
+  const WholeLanes<Real> eighth = WholeLanes<Real>{} + (1 << 29);
   const Wholes quarters = wrapped<Real>(fraction + eighth) >> 30;
   const Wholes rest = wrapped<Real>(fraction - (quarters << 30));
   const CosSin<L> part =
@@ -70,8 +72,19 @@ STRAINWAVE_INLINE CosSin<Lanes<Real>> cos_sin_of_fraction(WholeLanes<Real> fract
   const auto sine_bits = reinterpret_cast<Wholes>(part.sine.v);
   const Wholes turned_cosine = ((cosine_bits & ~odd) | (sine_bits & odd)) ^ cosine_sign;
   const Wholes turned_sine = ((sine_bits & ~odd) | (cosine_bits & odd)) ^ sine_sign;
-  using Vector = typename L::Vector;
+  using Vector = L::Vector;
   return {L(reinterpret_cast<Vector>(turned_cosine)), L(reinterpret_cast<Vector>(turned_sine))};
+}
+
+/// The quotient by a whole turn; by two products where they are rounded once, which is faster.
+STRAINWAVE_INLINE Lanes<double> turns_of(Lanes<double> angle_rad) {
+#if STRAINWAVE_LANE_LEVEL >= 3
+  const Lanes<double> per_turn = 1.0 / two_pi<double>;
+  const Lanes<double> turns = angle_rad * per_turn;
+  return fused(fused_minus(turns, Lanes<double>(two_pi<double>), angle_rad), per_turn, turns);
+#else
+  return angle_rad / Lanes<double>(two_pi<double>);
+#endif
 }
 
 /// Angles of one channel as nearest turns and fraction; turns that no lane takes where they are out
@@ -96,7 +109,7 @@ STRAINWAVE_KERNEL void convert_angles(const double* angle_rad, std::size_t count
       }
       from = rest;
     }
-    const Wide in_turns = Wide::load(from) / Wide(two_pi<double>);
+    const Wide in_turns = turns_of(Wide::load(from));
     const Wide whole = in_turns + rounder;
     const Wide units = (in_turns - (whole - rounder)) * Wide(4294967296.0) + rounder;
     const auto reachable = absolute(in_turns) < Wide(static_cast<double>(detail::most_lane_turns));
@@ -110,6 +123,8 @@ STRAINWAVE_KERNEL void convert_angles(const double* angle_rad, std::size_t count
   }
 }
 
+// NOLINTEND(cppcoreguidelines-pro-type-reinterpret-cast)
+
 /// How often an order's lanes move their frames together.
 inline constexpr std::size_t samples_between_moves = 16;
 
@@ -122,9 +137,11 @@ struct RippleGroup {
   using Memory = RippleLanes<Real, Pairs>;
   static constexpr std::size_t coefficients = 2 * Pairs;
 
+  // NOLINTBEGIN(cppcoreguidelines-avoid-const-or-ref-data-members): a group lives for one sample.
   Memory& memory;
   const RippleTile<Real>& tile;
   const RippleAlone& alone;
+  // NOLINTEND(cppcoreguidelines-avoid-const-or-ref-data-members)
   std::size_t lane;
   std::size_t k;
 
@@ -267,10 +284,9 @@ struct RippleGroup {
   }
 
   STRAINWAVE_INLINE void find_factors() {
-    const L load_ratio = load(memory.load_Nm) * load(memory.per_rated_torque);
     const L speed = absolute(speed_rad_s);
     factors[0] = Real(1);
-    factors[1] = load_ratio / (L(Real(1)) + absolute(load_ratio));
+    factors[1] = load(memory.load_factor);
     factors[2] = speed * load(memory.per_reference_speed);
     factors[3] = memory.any_direction ? speed_rad_s / (speed + L(Real(1))) : L(Real(0));
     factors[4] = Real(0);
@@ -409,31 +425,30 @@ struct RippleGroup {
   // ---- covariance, written out ------------------------------------------------------------------
 
   template <std::size_t I, std::size_t J>
-  STRAINWAVE_INLINE void project_element(const L* seen, L* sums) const {
+  STRAINWAVE_INLINE void project_element(L* sums) const {
     const L element = load(memory.covariance_Nm2[detail::lane_element(I, J)]);
-    sums[I] = I == 0 ? element * seen[0] : fused(element, seen[J], sums[I]);
-    if constexpr (I != J) {
-      sums[J] = fused(element, seen[I], sums[J]);
+    if constexpr (I == J) {
+      sums[I] = element * h[I];
+    } else {
+      sums[I] = fused(element, h[J], sums[I]);
+      sums[J] = fused(element, h[I], sums[J]);
     }
   }
-  template <std::size_t I, std::size_t... J>
-  STRAINWAVE_INLINE void project_row(const L* seen, L* sums, std::index_sequence<J...>) const {
-    sums[I] = Real(0);
-    (project_element<I, J>(seen, sums), ...);
+  template <std::size_t D, std::size_t... J>
+  STRAINWAVE_INLINE void project_diagonal(L* sums, std::index_sequence<J...>) const {
+    (project_element<J + D, J>(sums), ...);
   }
-  /// P h; each element is read once.
-  template <std::size_t... I>
-  STRAINWAVE_INLINE void project(L* projected, std::index_sequence<I...>) const {
-    const L seen[coefficients] = {h[I]...};
-    L sums[coefficients];
-    (project_row<I>(seen, sums, std::make_index_sequence<I + 1>{}), ...);
-    ((projected[I] = sums[I]), ...);
+  /// P h; each element is read once.  By diagonals, so that no sum is added to twice in a row: it
+  /// would be waited for.
+  template <std::size_t... D>
+  STRAINWAVE_INLINE void project(L* sums, std::index_sequence<D...>) const {
+    (project_diagonal<D>(sums, std::make_index_sequence<coefficients - D>{}), ...);
   }
 
   template <std::size_t I, std::size_t... J>
   STRAINWAVE_INLINE void measure_row(L gain, const L* with, std::index_sequence<J...>) const {
-    ((store(fused_minus(gain, with[J], load(memory.covariance_Nm2[detail::lane_element(I, J)])),
-            memory.covariance_Nm2[detail::lane_element(I, J)])),
+    (store(fused_minus(gain, with[J], load(memory.covariance_Nm2[detail::lane_element(I, J)])),
+           memory.covariance_Nm2[detail::lane_element(I, J)]),
      ...);
   }
   /// P - P h h'P / s.
@@ -500,6 +515,7 @@ struct RippleGroup {
     L gained_Nm2[Pairs];
     find_noise(gained_Nm2);
     track_scale();
+    finish();
     const L state_Nm = load(memory.torque_state_Nm);
     store(fused((with_torque_Nm2 + jump_Nm2) * per_variance, innovation_Nm, state_Nm),
           memory.torque_state_Nm);
@@ -508,8 +524,8 @@ struct RippleGroup {
     measure_torque(left, projected_Nm2, torque_row_Nm2, by_coefficient);
     if (moving.any()) {
       const L learning = select(moving, per_variance, L(Real(0)));
-      measure_coefficients(learning, by_coefficient);
       learn(learning * innovation_Nm, by_coefficient);
+      measure_coefficients(learning, by_coefficient);
       add_noise(gained_Nm2);
     }
   }
@@ -517,8 +533,7 @@ struct RippleGroup {
   /// The coefficients' part of the update.
   template <std::size_t... I>
   STRAINWAVE_INLINE void learn(L gain_per_row, std::index_sequence<I...>) const {
-    ((store(fused(row[I], gain_per_row, load(memory.coefficients_Nm[I])),
-            memory.coefficients_Nm[I])),
+    (store(fused(row[I], gain_per_row, load(memory.coefficients_Nm[I])), memory.coefficients_Nm[I]),
      ...);
   }
 
@@ -640,7 +655,10 @@ struct RippleGroup {
     store(clean_Nm, memory.torque_Nm);
     store(all_removed_Nm, memory.torque_all_Nm);
     const L load_Nm = load(memory.load_Nm);
-    store(fused(load(memory.load_share), all_removed_Nm - load_Nm, load_Nm), memory.load_Nm);
+    const L now_Nm = fused(load(memory.load_share), all_removed_Nm - load_Nm, load_Nm);
+    store(now_Nm, memory.load_Nm);
+    const L load_ratio = now_Nm * load(memory.per_rated_torque);
+    store(load_ratio / (L(Real(1)) + absolute(load_ratio)), memory.load_factor);
     const L typical_s = load(memory.typical_interval_s);
     store(fused(interval_s - typical_s, L(Real(1) / Real(64)), typical_s),
           memory.typical_interval_s);
@@ -699,7 +717,6 @@ struct RippleGroup {
     enter_frame();
     remove_ripple();
     update();
-    finish();
     put_all();
     const Mask left = live & !usual;
     if (left.any()) [[unlikely]] {

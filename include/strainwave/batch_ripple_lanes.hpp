@@ -68,6 +68,7 @@ struct alignas(64) RippleLanes {
   Row speed_rad_s;
   Row smoothed_speed_rad_s;
   Row load_Nm;
+  Row load_factor;  ///< that follows from it: its quotient need not be waited for
   Row typical_interval_s;
   Row measured_Nm;
   Row torque_Nm;
@@ -215,8 +216,7 @@ inline void put_config(RippleLanes<Real, Pairs>& lanes, std::size_t lane,
     const Order order = config.orders[a].order;
     lanes.order[a][lane] = to_real<Real>(order);
     lanes.per_order[a][lane] = Real(1) / to_real<Real>(order);
-    lanes.numerator[a][lane] =
-        static_cast<typename RippleLanes<Real, Pairs>::Whole>(order.numerator);
+    lanes.numerator[a][lane] = static_cast<RippleLanes<Real, Pairs>::Whole>(order.numerator);
     lanes.kept[a][lane] = config.orders[a].keep ? Real(1) : Real(0);
     lanes.any_kept = lanes.any_kept || config.orders[a].keep;
   }
@@ -239,7 +239,7 @@ template <class Real, std::size_t Pairs, std::size_t MaxPairs>
 inline void put_state(RippleLanes<Real, Pairs>& lanes, std::size_t lane,
                       const RippleFilterConfig<Real, MaxPairs>& config,
                       const RippleFilterState<Real, MaxPairs>& state) {
-  using Whole = typename RippleLanes<Real, Pairs>::Whole;
+  using Whole = RippleLanes<Real, Pairs>::Whole;
   lanes.in_step[lane] = is_in_step(config, state) ? Real(1) : Real(0);
   if (lanes.in_step[lane] <= Real(0)) {
     return;
@@ -275,6 +275,7 @@ inline void put_state(RippleLanes<Real, Pairs>& lanes, std::size_t lane,
   lanes.speed_rad_s[lane] = state.speed_rad_s;
   lanes.smoothed_speed_rad_s[lane] = state.smoothed_speed_rad_s;
   lanes.load_Nm[lane] = state.load_Nm;
+  lanes.load_factor[lane] = factors_now(config, state).load;
   lanes.typical_interval_s[lane] = state.typical_interval_s;
   lanes.measured_Nm[lane] = state.measured_Nm;
   lanes.torque_Nm[lane] = state.torque_Nm;

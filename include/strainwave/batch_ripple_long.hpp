@@ -167,8 +167,10 @@ inline LongReport join_chunks(const RippleFilterConfig<Real, MaxPairs>& config,
     RippleChunk<Real, MaxPairs>& chunk = chunks[i];
     report.warm_up_samples += chunk.warm_up;
     const StateDifference apart = difference_of(config, chunk.began, chunks[i - 1].ended);
-    if (!(apart.ripple_Nm <= options.tolerance_Nm &&
-          apart.state_Nm <= options.state_tolerance_Nm)) {
+    // In this way round, so that what is no number is no agreement.
+    const bool agrees =
+        apart.ripple_Nm <= options.tolerance_Nm && apart.state_Nm <= options.state_tolerance_Nm;
+    if (!agrees) {
       ++report.repeated_chunks;
       chunk.ended = chunks[i - 1].ended;
       chunk.ended.counters = {};
