@@ -248,13 +248,13 @@ constexpr bool add_noise(RippleCovariance<Real, MaxPairs>& p, std::size_t a, std
                          std::size_t terms, Real variance_Nm2, Real limit_Nm2) {
   Real weight = Real(1);
   Real sum_Nm2 = Real(0);
-  Real least_share = Real(1);
+  Real smallest_share = Real(1);
   for (std::size_t t = 0; t < terms; ++t) {
     const std::size_t i = b + 2 * (t + 1);
     const Real factor = p.frames[a][t];
     const Real share = share_of_noise(p, i, limit_Nm2);
     const Real its_Nm2 = variance_Nm2 * share;
-    least_share = share < least_share ? share : least_share;
+    smallest_share = share < smallest_share ? share : smallest_share;
     for (std::size_t side = 0; side < 2; ++side) {
       add_to_element(p, i + side, b + side, factor * its_Nm2);
       add_to_element(p, i + side, i + side, its_Nm2);
@@ -266,7 +266,7 @@ constexpr bool add_noise(RippleCovariance<Real, MaxPairs>& p, std::size_t a, std
   sum_Nm2 += variance_Nm2 * share;
   add_to_element(p, b, b, sum_Nm2);
   add_to_element(p, b + 1, b + 1, sum_Nm2);
-  return !(share > Real(0) && least_share > Real(0));
+  return !(share > Real(0) && smallest_share > Real(0));
 }
 
 /// What a measurement T + h'c sees of P, in the frame.
