@@ -428,16 +428,7 @@ class RippleBlockRun {
     }
   }
 
-  const Block& block_;  // NOLINT(cppcoreguidelines-avoid-const-or-ref-data-members)
-  RippleKernel<Real, Pairs> kernel_;
   Lanes lanes_ = {};
-  RippleTile<Real> tile_ = {};
-  std::size_t at_ = 0;  ///< first sample of the tile
-  std::size_t from_[width] = {};
-  bool has_expected_ = false;
-  bool has_interval_ = false;
-  bool has_status_ = false;
-  bool has_output_[ripple_outputs] = {};
   alignas(64) Real periods_s_[width] = {};
   Tile<Real> measured_;
   Tile<Real> turns_;
@@ -446,6 +437,15 @@ class RippleBlockRun {
   Tile<Real> expected_;
   Tile<Real> outputs_[ripple_outputs];
   Tile<Real> status_;
+  const Block& block_;  // NOLINT(cppcoreguidelines-avoid-const-or-ref-data-members)
+  RippleKernel<Real, Pairs> kernel_;
+  RippleTile<Real> tile_ = {};
+  std::size_t at_ = 0;  ///< first sample of the tile
+  std::size_t from_[width] = {};
+  bool has_expected_ = false;
+  bool has_interval_ = false;
+  bool has_status_ = false;
+  bool has_output_[ripple_outputs] = {};
   Real turns_of_[width][tile_samples];
   Real fractions_of_[width][tile_samples];
 

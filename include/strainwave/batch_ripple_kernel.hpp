@@ -137,14 +137,6 @@ struct RippleGroup {
   using Memory = RippleLanes<Real, Pairs>;
   static constexpr std::size_t coefficients = 2 * Pairs;
 
-  // NOLINTBEGIN(cppcoreguidelines-avoid-const-or-ref-data-members): a group lives for one sample.
-  Memory& memory;
-  const RippleTile<Real>& tile;
-  const RippleAlone& alone;
-  // NOLINTEND(cppcoreguidelines-avoid-const-or-ref-data-members)
-  std::size_t lane;
-  std::size_t k;
-
   L torque_Nm;
   L expected_Nm;
   L interval_s;
@@ -153,10 +145,6 @@ struct RippleGroup {
   L rotation_rad;
   L speed_rad_s;
   L smoothed_speed_rad_s;
-  Mask usual;
-  Mask moving;
-  Mask above_nyquist;
-  Mask limited;
 
   L cosines[Pairs];  ///< of each order
   L sines[Pairs];
@@ -169,6 +157,19 @@ struct RippleGroup {
   L all_removed_Nm;
   L innovation_Nm;
   L variance_Nm2;
+
+  // NOLINTBEGIN(cppcoreguidelines-avoid-const-or-ref-data-members): a group lives for one sample.
+  Memory& memory;
+  const RippleTile<Real>& tile;
+  const RippleAlone& alone;
+  // NOLINTEND(cppcoreguidelines-avoid-const-or-ref-data-members)
+  std::size_t lane;
+  std::size_t k;
+
+  Mask usual;
+  Mask moving;
+  Mask above_nyquist;
+  Mask limited;
 
   static constexpr auto by_pair = std::make_index_sequence<Pairs>{};
   static constexpr auto by_coefficient = std::make_index_sequence<coefficients>{};
@@ -264,7 +265,7 @@ struct RippleGroup {
     rotation_rad = load(memory.rotation_rad);
   }
 
-  STRAINWAVE_INLINE Wholes order_fraction(std::size_t a) const {
+  [[nodiscard]] STRAINWAVE_INLINE Wholes order_fraction(std::size_t a) const {
     return memory.any_own_angle
                ? load_whole<Real>(memory.order_fraction[a] + lane)
                : wrapped<Real>(fraction * load_whole<Real>(memory.numerator[a] + lane));
@@ -295,15 +296,15 @@ struct RippleGroup {
   // ---- frame ------------------------------------------------------------------------------------
 
   template <std::size_t P>
-  STRAINWAVE_INLINE L offset() const {
+  [[nodiscard]] STRAINWAVE_INLINE L offset() const {
     return factors[memory.factor_of[P]] - load(memory.frames[P]);
   }
   template <std::size_t P>
-  STRAINWAVE_INLINE Mask is_too_far() const {
+  [[nodiscard]] STRAINWAVE_INLINE Mask is_too_far() const {
     return absolute(offset<P>()) > L(memory.widest_offset[P]);
   }
   template <std::size_t... P>
-  STRAINWAVE_INLINE Mask is_any_too_far(std::index_sequence<P...>) const {
+  [[nodiscard]] STRAINWAVE_INLINE Mask is_any_too_far(std::index_sequence<P...>) const {
     return (is_too_far<P>() | ...);
   }
   template <std::size_t P>
@@ -334,6 +335,7 @@ struct RippleGroup {
   }
 
   /// Moves the lanes, of those given, whose factors are beyond a share of the widest offset.
+  // NOLINTNEXTLINE(modernize-use-nodiscard): the moved lanes, for who wants to know.
   STRAINWAVE_INLINE Mask follow(std::size_t a, L share, Mask lanes) const {
     const RippleOrderLayout& order = memory.orders[a];
     L steps[3];
@@ -470,7 +472,7 @@ struct RippleGroup {
   // ---- update -----------------------------------------------------------------------------------
 
   /// jump_variance() of ripple_state.hpp, where the motor moves.
-  STRAINWAVE_INLINE L jump_variance(L ripple_variance_Nm2) const {
+  [[nodiscard]] STRAINWAVE_INLINE L jump_variance(L ripple_variance_Nm2) const {
     const L scale_Nm = load(memory.innovation_scale_Nm);
     const L limit_Nm2 = L(static_cast<Real>(detail::robust_limit * detail::robust_limit)) *
                         larger(scale_Nm * scale_Nm, ripple_variance_Nm2);
@@ -591,7 +593,7 @@ struct RippleGroup {
     add_to(memory.covariance_Nm2[detail::lane_element(i, j)], value_Nm2);
   }
   /// share_of_noise() of ripple_covariance.hpp; lanes that are given nothing are remembered.
-  STRAINWAVE_INLINE L share_of_noise(std::size_t i, L half_per_limit) {
+  [[nodiscard]] STRAINWAVE_INLINE L share_of_noise(std::size_t i, L half_per_limit) {
     const L variances_Nm2 = load(memory.covariance_Nm2[detail::lane_element(i, i)]) +
                             load(memory.covariance_Nm2[detail::lane_element(i + 1, i + 1)]);
     const L share = L(Real(1)) - variances_Nm2 * half_per_limit;

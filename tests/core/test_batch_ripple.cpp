@@ -15,7 +15,6 @@
 namespace {
 
 using strainwave::RippleOutput;
-using strainwave::StatusFlag;
 using strainwave::VectorLevel;
 
 constexpr std::size_t most_pairs = 12;
@@ -74,8 +73,11 @@ Config<Real> joint(std::size_t number) {
     default:
       break;
   }
-  config.angle_to_torque_delay_s =
-      number % 7 == 5 ? Real(0.0023) : (number % 7 == 6 ? Real(-0.0005) : Real(0));
+  if (number % 7 == 5) {
+    config.angle_to_torque_delay_s = Real(0.0023);
+  } else if (number % 7 == 6) {
+    config.angle_to_torque_delay_s = Real(-0.0005);
+  }
   config.memory_turns = static_cast<Real>(5.0 + static_cast<double>(number));
   config.torque_noise_Nm *= static_cast<Real>(1.0 + 0.05 * static_cast<double>(number));
   return config;
@@ -226,6 +228,7 @@ struct Batch {
 
   void run(const strainwave::BatchOptions& options) {
     std::vector<strainwave::RippleChannel<Real>> channels;
+    channels.reserve(logs.size());
     for (auto& log : logs) {
       channels.push_back(log.channel());
     }
