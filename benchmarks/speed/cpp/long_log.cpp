@@ -8,38 +8,35 @@
 
 #include "batch_options.hpp"
 #include "cases.hpp"
-#include "filters.hpp"
-#include "long_signals.hpp"
+#include "log_signals.hpp"
 #include "strainwave/batch_long.hpp"
+#include "strainwave/batch_ripple_long.hpp"
 
 namespace speed {
 
 namespace {
 
+template <class Signals>
 struct Log {
-  std::vector<float> torque_Nm;
-  std::vector<float> speed_rad_s;
+  Signals signals;
   std::vector<float> ripple_Nm;
   strainwave::LongReport report;
 };
 
-void filter_long(Log& log, const strainwave::LongOptions& how, std::vector<float>& ripple_Nm) {
-  strainwave::OscillatorChannel<float> channel;
-  channel.sample_count = log.torque_Nm.size();
-  channel.measured_torque_Nm = log.torque_Nm.data();
-  channel.motor_speed_rad_s = log.speed_rad_s.data();
-  channel.ripple_Nm = ripple_Nm.data();
-  auto state = strainwave::initial_state(published<float>);
-  log.report = strainwave::process_long<float, 3>(published<float>, state, channel, how);
+template <class Signals>
+strainwave::LongReport filter_long(const Signals& signals, const strainwave::LongOptions& how,
+                                   std::vector<float>& ripple_Nm) {
+  auto state = strainwave::initial_state(Signals::config);
+  return strainwave::process_long(Signals::config, state, signals.channel(ripple_Nm), how);
 }
 
 /// JSON members: how far the chunks came out from a sequence, and what they took.
-std::string compared_with_sequence(Log& log) {
-  const strainwave::LongReport report = log.report;
+template <class Signals>
+std::string compared_with_sequence(const Log<Signals>& log) {
   std::vector<float> sequence_Nm(log.ripple_Nm.size());
   strainwave::LongOptions in_sequence;
   in_sequence.in_sequence = true;
-  filter_long(log, in_sequence, sequence_Nm);
+  filter_long(log.signals, in_sequence, sequence_Nm);
   double squares_Nm2 = 0.0;
   double largest_Nm = 0.0;
   for (std::size_t k = 0; k < sequence_Nm.size(); ++k) {
@@ -51,24 +48,24 @@ std::string compared_with_sequence(Log& log) {
   std::ostringstream text;
   text << R"(, "difference_rms_Nm": )"
        << std::sqrt(squares_Nm2 / static_cast<double>(sequence_Nm.size()))
-       << R"(, "difference_largest_Nm": )" << largest_Nm << R"(, "chunks": )" << report.chunk_count
-       << R"(, "repeated_chunks": )" << report.repeated_chunks << R"(, "warm_up_samples": )"
-       << report.warm_up_samples;
+       << R"(, "difference_largest_Nm": )" << largest_Nm << R"(, "chunks": )"
+       << log.report.chunk_count << R"(, "repeated_chunks": )" << log.report.repeated_chunks
+       << R"(, "warm_up_samples": )" << log.report.warm_up_samples;
   return text.str();
 }
 
-Case long_published(const Recording& recording, const Options& options) {
-  const auto log = std::make_shared<Log>();
+template <class Signals>
+Case long_log(const Recording& recording, const Options& options) {
+  const auto log = std::make_shared<Log<Signals>>();
   strainwave::LongOptions how;
   how.batch = batch_options(options);
   Case each;
   each.prepare = [log, recording](std::size_t samples) {
-    repeat(recording.torque_Nm, samples, log->torque_Nm);
-    repeat(recording.motor_speed_rad_s, samples, log->speed_rad_s);
+    log->signals.prepare(recording, samples, 0);
     log->ripple_Nm.assign(samples, 0.0F);
   };
   each.run = [log, how](std::size_t samples) {
-    filter_long(*log, how, log->ripple_Nm);
+    log->report = filter_long(log->signals, how, log->ripple_Nm);
     return samples;
   };
   each.ripple_Nm = [log] {
@@ -80,6 +77,9 @@ Case long_published(const Recording& recording, const Options& options) {
 
 }  // namespace
 
-void add_long(Cases& cases) { cases["long_published"] = long_published; }
+void add_long(Cases& cases) {
+  cases["long_published"] = long_log<PublishedSignals>;
+  cases["long_default"] = long_log<DefaultSignals>;
+}
 
 }  // namespace speed
