@@ -16,6 +16,9 @@ from benchmarks.speed.reference import default_ripple, published_ripple
 TOLERANCE_NM: Final = {
     ("published", "double"): 1e-9,
     ("published", "float"): 2e-5,
+    # The peers give process noise before a sample, and hold no variance to its limit.
+    ("default_unlimited", "double"): 1e-2,
+    ("default_unlimited", "float"): 1e-2,
     ("default", "double"): 1e-5,
     ("default", "float"): 2e-3,
 }

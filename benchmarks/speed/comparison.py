@@ -87,7 +87,7 @@ def _row(each: Implementation) -> dict[str, Any]:
 def _agrees(each: Implementation, worker: Worker, row: dict[str, Any], setting: Setting) -> bool:
     reference = setting.references[each.reference]
     ripple = worker.ripple_Nm(len(reference), setting.inputs)
-    found = agreement(each.filter, each.precision, ripple, reference)
+    found = agreement(each.reference, each.precision, ripple, reference)
     row["version"] = worker.version
     row["difference_rms_Nm"] = found.difference_rms_Nm if np.isfinite(ripple).all() else None
     if not found.ok:

@@ -91,7 +91,7 @@ def test_peers_that_are_there_agree(each, inputs, found):
         ripple = worker.ripple_Nm(SAMPLES, inputs)
         assert worker.version
         assert worker.peak_memory_bytes > 1e6
-    assert agreement(each.filter, each.precision, ripple, found[each.reference]).ok
+    assert agreement(each.reference, each.precision, ripple, found[each.reference]).ok
 
 
 #: What finds the vector level when it runs: many channels, and a log that may be cut into chunks.
@@ -120,7 +120,7 @@ def test_programs_in_cpp_agree_on_every_path(inputs, found):
         except NotAvailableError as error:
             assert "eigen" in each.name, error  # noqa: PT017
             continue
-        assert agreement(each.filter, each.precision, ripple, found[each.reference]).ok, each
+        assert agreement(each.reference, each.precision, ripple, found[each.reference]).ok, each
         checked += 1
     assert checked >= 6 + len(DISPATCHED)
 
