@@ -202,9 +202,10 @@ bool is_alike(Real a, Real b, double tolerance) {
          std::abs(static_cast<double>(a) - static_cast<double>(b)) <= tolerance * scale;
 }
 
-/// Largest difference that rounding leaves, Nm: float learns from its own rounding.
+/// Largest difference, Nm: float learns from its own rounding; and how little a pair is known is
+/// judged in the frame, which lanes move at other samples.
 template <class Real>
-constexpr double tolerance_Nm = sizeof(Real) == 4 ? 2e-3 : 1e-9;
+constexpr double tolerance_Nm = sizeof(Real) == 4 ? 2e-3 : 1e-6;
 
 template <class Real>
 void expect_alike(const Log<Real>& lanes, const Log<Real>& alone, std::size_t channel) {
