@@ -17,6 +17,7 @@ namespace strainwave {
 /// Everything that changes from lane to lane is a row.  An order that a lane does not have is a
 /// pair of states whose output row is zero: nothing of it ever changes.
 template <class Real, std::size_t Orders>
+// NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init): filled lane by lane
 struct alignas(64) OscillatorLanes {
   using Number = Real;
   using Row = Real[block_width<Real>];

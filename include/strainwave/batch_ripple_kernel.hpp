@@ -92,7 +92,7 @@ STRAINWAVE_INLINE Lanes<double> turns_of(Lanes<double> angle_rad) {
 template <class Real>
 STRAINWAVE_KERNEL void convert_angles(const double* angle_rad, std::size_t count, Real* turns,
                                       Real* fraction) {
-  using Whole = typename LaneVectors<Real>::Whole;
+  using Whole = LaneVectors<Real>::Whole;
   using Wide = Lanes<double>;
   using Wides = LaneVectors<double>::Wholes;
   using Narrow [[gnu::vector_size(Wide::count * sizeof(Whole))]] = Whole;

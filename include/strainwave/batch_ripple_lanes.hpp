@@ -6,6 +6,7 @@
 /// missing angle, a late row, a gap) a lane does alone, through step(), and then comes back.
 #pragma once
 
+#include <compare>
 #include <cstddef>
 #include <cstdint>
 #include <limits>

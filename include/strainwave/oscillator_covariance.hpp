@@ -103,6 +103,7 @@ inline void learn(std::size_t count, Real (*p)[Length], Real* states_Nm,
     // Gain times element on and below the diagonal; above it the same two with their parts changed.
     const auto above = static_cast<std::ptrdiff_t>(j);
     const Row row = Row::joined(above, covariance_with_output, gain);
+    // NOLINTNEXTLINE(readability-suspicious-call-argument): the joined one is called one, too
     const Row column = Row::all(elements[j]) * Row::joined(above, scale, one);
     const Row noise = Row::joined(
         above, zero, Row::joined(above + 1, Row::all(process_noise_variance_Nm2[j / 2]), zero));

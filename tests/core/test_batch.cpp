@@ -35,6 +35,7 @@ struct Fleet {
 
   void process(const BatchOptions& options, std::size_t start, std::size_t end) {
     std::vector<OscillatorChannel<Real>> channels;
+    channels.reserve(logs.size());
     for (Log<Real>& log : logs) {
       channels.push_back(
           log.channel(std::min(start, log.torque_Nm.size()), std::min(end, log.torque_Nm.size())));
