@@ -12,8 +12,8 @@
 
 namespace {
 
-using strainwave::detail::row_lane_count;
 using strainwave::detail::NumberRow;
+using strainwave::detail::row_lane_count;
 
 /// Numbers whose sum depends on the order of the additions.
 template <class Real, std::size_t Count>

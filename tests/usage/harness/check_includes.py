@@ -14,6 +14,7 @@ ALLOWED_HOSTED = ALLOWED | {
     "algorithm",
     "arm_neon.h",
     "atomic",
+    "compare",
     "immintrin.h",
     "initializer_list",
     "memory",
