@@ -89,7 +89,6 @@ def build_rust() -> str:
             "build",
             "--quiet",
             "--release",
-            "--locked",
             "--ignore-rust-version",
             "--manifest-path",
             _SPEED / "rust" / "Cargo.toml",

@@ -169,11 +169,11 @@ def test_numbers_are_readable(value, text):
     assert number(value) == text
 
 
-def test_minikalman_says_the_version_that_is_locked():
+def test_minikalman_says_the_version_that_is_pinned():
     folder = ROOT / "benchmarks" / "speed" / "rust"
-    lock = (folder / "Cargo.lock").read_text(encoding="utf-8")
-    (locked,) = re.findall(r'name = "minikalman"\nversion = "([0-9.]+)"', lock)
-    assert f'"{locked}' in (folder / "src" / "main.rs").read_text(encoding="utf-8").replace(
+    named = (folder / "Cargo.toml").read_text(encoding="utf-8")
+    (pinned,) = re.findall(r'minikalman = { version = "=([0-9.]+)"', named)
+    assert f'"{pinned}' in (folder / "src" / "main.rs").read_text(encoding="utf-8").replace(
         "\\", ""
     )
 
