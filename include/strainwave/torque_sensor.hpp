@@ -321,6 +321,7 @@ template <class Real, std::size_t MaxGauges, class FilterConfig>
   std::size_t at_end = 0;
   for (std::size_t j = 0; j < active_gauges(config.gains); ++j) {
     const ConverterCode code = sample.codes[j];
+    // NOLINTNEXTLINE(clang-analyzer-security.ArrayBound): active_gauges() keeps to the capacity
     volts[j] = to_volts(config.converter, code);
     if (is_saturated(config.converter, code)) {
       ++at_end;

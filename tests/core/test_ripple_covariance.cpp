@@ -33,7 +33,8 @@ constexpr std::size_t structures = 5;
 template <class Real, std::size_t MaxPairs>
 strainwave::RippleFilterConfig<Real, MaxPairs> structure(std::size_t index) {
   strainwave::RippleFilterConfig<Real, MaxPairs> config;
-  config.order_count = index < 2 ? 1 : index < 4 ? 2 : 3;
+  constexpr std::size_t order_counts[structures] = {1, 1, 2, 2, 3};
+  config.order_count = order_counts[index];
   for (std::uint32_t a = 0; a < config.order_count; ++a) {
     config.orders[a].order = {2 * (a + 1), 1};
   }
