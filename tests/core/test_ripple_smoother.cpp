@@ -106,13 +106,50 @@ Vector solved(Matrix p, Vector b) {
   return b;
 }
 
+constexpr double noise = 0.04 * 0.04;
+constexpr double walk = 1.3 * 1.3 * 1e-3;
+
+/// Process noise of the coefficients, after a sample and before the next one's update.
+void give_noise(Matrix& p) {
+  const double pi = 3.14159265358979323846;
+  for (std::size_t a = 0; a < 2; ++a) {
+    const double chord = 2.0 - 2.0 * std::cos((a == 0 ? 2.0 : 4.0) * turn_rad);
+    const double gained = 2.0 * (noise + walk / chord) * std::pow(turn_rad / (2.0 * pi * 30.0), 2);
+    const std::size_t i = 1 + 2 * a;
+    const double given = gained * std::fmax(0.0, 1.0 - (p[i][i] + p[i + 1][i + 1]) / 8.0);
+    p[i][i] += given;
+    p[i + 1][i + 1] += given;
+  }
+}
+
+/// A measurement of variance s and innovation e, seen as P h.
+void measure(Vector& x, Matrix& p, const Vector& ph, double s, double e) {
+  for (std::size_t i = 0; i < n; ++i) {
+    x[i] += ph[i] / s * e;
+    for (std::size_t j = 0; j < n; ++j) {
+      p[i][j] -= ph[i] * ph[j] / s;
+    }
+  }
+}
+
+Vector plus(Vector a, const Vector& b) {
+  for (std::size_t i = 0; i < n; ++i) {
+    a[i] += b[i];
+  }
+  return a;
+}
+
+Vector less(Vector a, const Vector& b) {
+  for (std::size_t i = 0; i < n; ++i) {
+    a[i] -= b[i];
+  }
+  return a;
+}
+
 /// Kalman's filter from sample `first` on and the smoother of Rauch, Tung and Striebel, x_k + P_k
 /// P-_(k+1)^-1 (x_(k+1) - x-_(k+1)), with full matrices.
 std::vector<double> dense_ripple(std::size_t first) {
   const std::vector<double> torque_Nm = recording();
-  const double noise = 0.04 * 0.04;
-  const double walk = 1.3 * 1.3 * 1e-3;
-  const double pi = 3.14159265358979323846;
   Vector x{};
   Matrix p{};
   for (std::size_t i = 1; i < n; ++i) {
@@ -146,43 +183,24 @@ std::vector<double> dense_ripple(std::size_t first) {
         before_p[k] = p;
         s *= ratio;
       }
-      const Vector ph = product(p, h);
-      for (std::size_t i = 0; i < n; ++i) {
-        x[i] += ph[i] / s * e;
-        for (std::size_t j = 0; j < n; ++j) {
-          p[i][j] -= ph[i] * ph[j] / s;
-        }
-      }
+      measure(x, p, product(p, h), s, e);
       const double change = static_cast<double>(0.06F) * turn_rad *
                             ((std::fabs(e) > scale ? 1.0 : 0.0) - static_cast<double>(0.3F));
       scale = std::fmax(scale * (1.0 + change + change * change / 2.0), 0.02);
     }
     after_x[k] = x;
     after_p[k] = p;
-    // Process noise comes after the update, and before the next sample's.
-    for (std::size_t a = 0; a < 2 && k > first; ++a) {
-      const double chord = 2.0 - 2.0 * std::cos((a == 0 ? 2.0 : 4.0) * turn_rad);
-      const std::size_t i = 1 + 2 * a;
-      const double gained =
-          2.0 * (noise + walk / chord) * std::pow(turn_rad / (2.0 * pi * 30.0), 2);
-      const double given = gained * std::fmax(0.0, 1.0 - (p[i][i] + p[i + 1][i + 1]) / 8.0);
-      p[i][i] += given;
-      p[i + 1][i + 1] += given;
+    if (k > first) {
+      give_noise(p);
     }
   }
   std::vector<double> ripple(samples);
   Vector smoothed = x;
   for (std::size_t k = samples; k-- > first;) {
     if (k + 1 < samples) {
-      Vector change = smoothed;
-      for (std::size_t i = 0; i < n; ++i) {
-        change[i] -= before_x[k + 1][i];
-      }
-      change = product(after_p[k], solved(before_p[k + 1], change));
-      smoothed = after_x[k];
-      for (std::size_t i = 0; i < n; ++i) {
-        smoothed[i] += change[i];
-      }
+      smoothed =
+          plus(after_x[k],
+               product(after_p[k], solved(before_p[k + 1], less(smoothed, before_x[k + 1]))));
     }
     ripple[k] = dot(row_at(k), smoothed) - smoothed[0];
   }

@@ -130,12 +130,12 @@ TEST(Units, RadiansThereAndBack) {
 }
 
 TEST(Units, DifferencesAreExactAcrossTurnsAndFarFromZero) {
-  std::mt19937_64 random(11);
+  std::mt19937_64 random(11);  // NOLINT(*-msc32-c,*-msc51-cpp,bugprone-random-generator-seed)
   for (int i = 0; i < 20000; ++i) {
     const auto units = static_cast<std::int64_t>(random()) >> (i % 50 + 12);  // below 2^51
-    const Phase before = {
-        static_cast<std::int64_t>(random()) >> (i % 60 + 2),
-        i % 5 == 0 ? (i % 2 == 0 ? 0U : 0xFFFFFFFFU) : static_cast<std::uint32_t>(random())};
+    const std::uint32_t end = i % 2 == 0 ? 0U : 0xFFFFFFFFU;
+    const Phase before = {static_cast<std::int64_t>(random()) >> (i % 60 + 2),
+                          i % 5 == 0 ? end : static_cast<std::uint32_t>(random())};
     const Phase way = {units >> 32U, static_cast<std::uint32_t>(units)};
     ASSERT_EQ(before + way - before, way) << i;
     ASSERT_EQ(strainwave::to_turns<double>(way), static_cast<double>(units) * 0x1p-32) << i;
