@@ -184,7 +184,7 @@ void bind_precision(nb::module_& m, const char* name) {
            "returns torque, ripple and status of each.")
       .def(
           "process_long",
-          [](Batch& self, const typename Batch::Rows& rows, bool angle_referenced,
+          [](Batch& self, const Batch::Rows& rows, bool angle_referenced,
              VectorLevel level, std::size_t threads, bool in_sequence, double warm_up_memories,
              double tolerance_Nm, double state_tolerance_Nm) {
             const LongOptions options = {.batch = {.level = level, .thread_count = threads},
