@@ -122,7 +122,7 @@ template <class Real, std::size_t MaxOrders>
 namespace detail {
 
 /// Variances beyond these would overflow or vanish in float, in either precision's configuration.
-inline constexpr float smallest_variance_Nm2 = 1e-30F;
+inline constexpr float smallest_variance_Nm2 = 1e-20F;
 inline constexpr float largest_variance_Nm2 = 1e30F;
 /// A turn of the motor at this order, and a sample's rotation, stay within what can be reduced.
 inline constexpr std::int32_t largest_order = 1000;
@@ -175,11 +175,11 @@ template <class Real, std::size_t MaxOrders>
   }
   if (!detail::is_usable_variance(config.measurement_noise_variance_Nm2)) {
     return {"measurement_noise_variance_Nm2", -1, config.measurement_noise_variance_Nm2, "Nm^2",
-            "a number from 1e-30 to 1e30"};
+            "a number from 1e-20 to 1e30"};
   }
   if (!detail::is_usable_variance(config.initial_variance_Nm2)) {
     return {"initial_variance_Nm2", -1, config.initial_variance_Nm2, "Nm^2",
-            "a number from 1e-30 to 1e30"};
+            "a number from 1e-20 to 1e30"};
   }
   if (!(config.sample_period_s >= Real(1e-9F)) || config.sample_period_s > Real(1e3F)) {
     return {"sample_period_s", -1, config.sample_period_s, "s", "a number from 1e-9 to 1000"};

@@ -205,7 +205,7 @@ bool is_alike(Real a, Real b, double tolerance) {
 /// Largest difference, Nm: float learns from its own rounding; and how little a pair is known is
 /// judged in the frame, which lanes move at other samples.
 template <class Real>
-constexpr double tolerance_Nm = sizeof(Real) == 4 ? 2e-3 : 1e-5;
+constexpr double tolerance_Nm = sizeof(Real) == 4 ? 2e-3 : 1e-4;
 
 template <class Real>
 void expect_alike(const Log<Real>& lanes, const Log<Real>& alone, std::size_t channel) {
