@@ -103,7 +103,8 @@ def default_ripple(recording: Recording, samples: int, *, limited: bool = True) 
     samples : int
         How many of them.
     limited : bool
-        Whether a pair gains the less process noise the less it is known. The peers go without.
+        Whether a pair gains the less process noise the less it is known, and after a sample. The
+        peers go without, and give it before.
 
     Returns
     -------
@@ -111,7 +112,7 @@ def default_ripple(recording: Recording, samples: int, *, limited: bool = True) 
         Ripple predicted from the samples before, Nm, shape (samples,).
     """
     return reference_filter(
-        replace(DEFAULT_SETTINGS, variance_limited=limited),
+        replace(DEFAULT_SETTINGS, variance_limited=limited, noise_after=limited),
         recording.time_s[:samples],
         recording.motor_angle_rad[:samples],
         recording.torque_Nm[:samples],
