@@ -184,9 +184,9 @@ void bind_precision(nb::module_& m, const char* name) {
            "returns torque, ripple and status of each.")
       .def(
           "process_long",
-          [](Batch& self, const Batch::Rows& rows, bool angle_referenced,
-             VectorLevel level, std::size_t threads, bool in_sequence, double warm_up_memories,
-             double tolerance_Nm, double state_tolerance_Nm) {
+          [](Batch& self, const Batch::Rows& rows, bool angle_referenced, VectorLevel level,
+             std::size_t threads, bool in_sequence, double warm_up_memories, double tolerance_Nm,
+             double state_tolerance_Nm) {
             const LongOptions options = {.batch = {.level = level, .thread_count = threads},
                                          .in_sequence = in_sequence,
                                          .warm_up_memories = warm_up_memories,
