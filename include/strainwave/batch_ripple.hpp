@@ -64,9 +64,6 @@ struct RippleChannel {
 
 namespace detail {
 
-/// Most pairs of a filter that runs on lanes.
-inline constexpr std::size_t most_lane_pairs = 10;
-
 /// What kernel a filter needs: lanes of a block have to be alike in this.
 struct RippleKind {
   std::size_t pairs = 0;  ///< capacity of the kernel; 0: none, one by one
@@ -114,6 +111,7 @@ struct RippleKernel {
   void (*filter_tile)(RippleLanes<Real, Pairs>&, const RippleTile<Real>&,
                       const RippleAlone&) = nullptr;
   void (*convert_angles)(const double*, std::size_t, Real*, Real*) = nullptr;
+  void (*convert_cycles)(const double*, std::size_t, Order, Real*) = nullptr;
 };
 
 template <class Real, std::size_t Pairs>
@@ -121,15 +119,18 @@ template <class Real, std::size_t Pairs>
   switch (level) {
 #if STRAINWAVE_HAS_X86_LEVELS
     case VectorLevel::x86_64_v2:
-      return {level_v2::filter_ripple_tile<Real, Pairs>, level_v2::convert_angles<Real>};
+      return {level_v2::filter_ripple_tile<Real, Pairs>, level_v2::convert_angles<Real>,
+              level_v2::convert_cycles<Real>};
     case VectorLevel::x86_64_v3:
-      return {level_v3::filter_ripple_tile<Real, Pairs>, level_v3::convert_angles<Real>};
+      return {level_v3::filter_ripple_tile<Real, Pairs>, level_v3::convert_angles<Real>,
+              level_v3::convert_cycles<Real>};
     case VectorLevel::x86_64_v4:
-      return {level_v4::filter_ripple_tile<Real, Pairs>, level_v4::convert_angles<Real>};
+      return {level_v4::filter_ripple_tile<Real, Pairs>, level_v4::convert_angles<Real>,
+              level_v4::convert_cycles<Real>};
 #elif STRAINWAVE_HAS_LANES
     case VectorLevel::portable:
-      return {level_portable::filter_ripple_tile<Real, Pairs>,
-              level_portable::convert_angles<Real>};
+      return {level_portable::filter_ripple_tile<Real, Pairs>, level_portable::convert_angles<Real>,
+              level_portable::convert_cycles<Real>};
 #endif
     default:
       return {};
@@ -191,6 +192,10 @@ class RippleBlockRun {
       put_config(lanes_, lane, *block.configs[lane]);
       put_state(lanes_, lane, *block.configs[lane], *block.states[lane]);
       const RippleChannel<Real>& channel = block.channels[lane];
+      for (std::size_t a = 0; a < kind.order_count; ++a) {
+        has_denominator_[a] =
+            has_denominator_[a] || block.configs[lane]->orders[a].order.denominator != 1;
+      }
       has_expected_ = has_expected_ || channel.expected_torque_Nm != nullptr;
       has_interval_ = has_interval_ || channel.interval_s != nullptr;
       has_status_ = has_status_ || channel.status != nullptr;
@@ -265,9 +270,29 @@ class RippleBlockRun {
              .status = has_status_ ? status_.values : nullptr,
              .first_sample = at_,
              .sample_count = count};
+    gather_cycles(count);
     gather_rest(count);
     for (std::size_t i = 0; i < ripple_outputs; ++i) {
       tile_.outputs[i] = has_output_[i] ? outputs_[i].values : nullptr;
+    }
+  }
+
+  /// Of orders with a denominator: their cycles depend on whole turns as well.
+  void gather_cycles(std::size_t count) {
+    for (std::size_t a = 0; a < lanes_.order_count; ++a) {
+      if (!has_denominator_[a]) {
+        continue;
+      }
+      const Real* fractions[width];
+      for (std::size_t lane = 0; lane < width; ++lane) {
+        fractions[lane] = fractions_of_[from_[lane]];
+        if (from_[lane] == lane) {
+          kernel_.convert_cycles(block_.channels[lane].motor_angle_rad + at_, count,
+                                 block_.configs[lane]->orders[a].order, fractions_of_[lane]);
+        }
+      }
+      gather(fractions, 0, count, order_fractions_[a].values);
+      tile_.order_fraction[a] = order_fractions_[a].values;
     }
   }
 
@@ -433,6 +458,7 @@ class RippleBlockRun {
   Tile<Real> measured_;
   Tile<Real> turns_;
   Tile<Real> fractions_;
+  Tile<Real> order_fractions_[Pairs];
   Tile<Real> intervals_;
   Tile<Real> expected_;
   Tile<Real> outputs_[ripple_outputs];
@@ -442,6 +468,7 @@ class RippleBlockRun {
   RippleTile<Real> tile_ = {};
   std::size_t at_ = 0;  ///< first sample of the tile
   std::size_t from_[width] = {};
+  bool has_denominator_[Pairs] = {};
   bool has_expected_ = false;
   bool has_interval_ = false;
   bool has_status_ = false;

@@ -87,6 +87,39 @@ STRAINWAVE_INLINE Lanes<double> turns_of(Lanes<double> angle_rad) {
 #endif
 }
 
+/// order_fraction() of one channel's angles, for orders that pass has_short_parts(): every number
+/// is a whole one that double holds, so that it is exact.
+template <class Real>
+STRAINWAVE_KERNEL void convert_cycles(const double* angle_rad, std::size_t count, Order order,
+                                      Real* fraction) {
+  using Wide = Lanes<double>;
+  using Wides = LaneVectors<double>::Wholes;
+  using Narrow [[gnu::vector_size(Wide::count * sizeof(typename LaneVectors<Real>::Whole))]] =
+      typename LaneVectors<Real>::Whole;
+  using Low [[gnu::vector_size(Wide::count * sizeof(std::int32_t))]] = std::int32_t;
+  const Wide rounder(6755399441055744.0);
+  const Wide numerator(static_cast<double>(order.numerator));
+  const Wide denominator(static_cast<double>(order.denominator));
+  const Wide per_denominator(1.0 / static_cast<double>(order.denominator));
+  for (std::size_t k = 0; k < count; k += Wide::count) {
+    const std::size_t left = count - k < Wide::count ? count - k : Wide::count;
+    double here[Wide::count] = {};
+    __builtin_memcpy(here, angle_rad + k, left * sizeof(double));
+    const Wide in_turns = turns_of(Wide::load(here));
+    const Wide whole = (in_turns + rounder) - rounder;
+    const Wide units = ((in_turns - whole) * Wide(4294967296.0) + rounder) - rounder;
+    // Whole multiples of the denominator are whole cycles, whichever number of them is taken off.
+    const Wide multiple = (whole * per_denominator + rounder) - rounder;
+    const Wide angle = (whole - multiple * denominator) * Wide(4294967296.0) + units;
+    const Wide cycles = angle * numerator / denominator;
+    const Wide nearest = (cycles + rounder) - rounder;
+    const Wide below = select(nearest > cycles, nearest - Wide(1.0), nearest) + rounder;
+    const auto low = __builtin_convertvector(reinterpret_cast<Wides>(below.v), Low);
+    const Narrow units_here = __builtin_convertvector(low, Narrow);
+    __builtin_memcpy(fraction + k, &units_here, left * sizeof(Real));
+  }
+}
+
 /// Angles of one channel as nearest turns and fraction; turns that no lane takes where they are out
 /// of reach.
 template <class Real>
@@ -253,10 +286,15 @@ struct RippleGroup {
 
   // ---- regressors -------------------------------------------------------------------------------
 
+  [[nodiscard]] STRAINWAVE_INLINE Wholes fraction_in_step(std::size_t a) const {
+    return tile.order_fraction[a] != nullptr
+               ? load_whole<Real>(tile.order_fraction[a] + k * block_width<Real> + lane)
+               : wrapped<Real>(fraction * load_whole<Real>(memory.numerator[a] + lane));
+  }
+
   STRAINWAVE_INLINE void find_own_angles() {
     for (std::size_t a = 0; a < memory.order_count; ++a) {
-      store_whole<Real>(wrapped<Real>(fraction * load_whole<Real>(memory.numerator[a] + lane)),
-                        memory.order_fraction[a] + lane);
+      store_whole<Real>(fraction_in_step(a), memory.order_fraction[a] + lane);
     }
     store(rotation_rad, memory.rotation_rad);
     store(speed_rad_s, memory.new_speed_rad_s);
@@ -266,9 +304,8 @@ struct RippleGroup {
   }
 
   [[nodiscard]] STRAINWAVE_INLINE Wholes order_fraction(std::size_t a) const {
-    return memory.any_own_angle
-               ? load_whole<Real>(memory.order_fraction[a] + lane)
-               : wrapped<Real>(fraction * load_whole<Real>(memory.numerator[a] + lane));
+    return memory.any_own_angle ? load_whole<Real>(memory.order_fraction[a] + lane)
+                                : fraction_in_step(a);
   }
 
   STRAINWAVE_INLINE void find_waves() {

@@ -85,7 +85,7 @@ struct alignas(64) RippleLanes {
   Row in_step;  ///< 1: the state is here; 0: with the channel, whose next sample is done alone
   Row live;     ///< 1: a channel that has not ended
   Row alone;    ///< 1: this sample is done alone
-  // Of lanes that find their angles alone: those with a delay, fractions of orders or frozen terms.
+  // Of lanes that find their angles alone: those with a delay or frozen terms.
   Row new_speed_rad_s;
   Row rotation_rad;  ///< since the last sample; then, since what was learned last
   WholeRow order_fraction[Pairs];
@@ -114,12 +114,17 @@ inline constexpr StatusFlag ripple_lane_flags[3] = {
 enum class RippleOutput : std::uint8_t { torque, ripple, all_removed, state, innovation, variance };
 inline constexpr std::size_t ripple_outputs = 6;
 
+/// Most pairs of a filter that runs on lanes.
+inline constexpr std::size_t most_lane_pairs = 10;
+
 /// Samples of a block, [time][block_width]; null outputs are not wanted.
 template <class Real>
 struct RippleTile {
   const Real* measured_torque_Nm = nullptr;
   const Real* turns = nullptr;     ///< bits of whole numbers, see RippleLanes::last_turns
   const Real* fraction = nullptr;  ///< likewise
+  /// Likewise of an order's cycles; null where all lanes have whole ones in a turn.
+  const Real* order_fraction[most_lane_pairs] = {};
   const Real* interval_s = nullptr;
   std::size_t interval_stride = block_width<Real>;
   const Real* expected_torque_Nm = nullptr;
@@ -161,12 +166,19 @@ template <class Whole>
   return {turns - (fraction < 0 ? 1 : 0), static_cast<std::uint32_t>(fraction)};
 }
 
+/// Whether lanes find an order's cycles from turns and fraction: products of both parts and 2^32
+/// have to be held by double.
+[[nodiscard]] constexpr bool has_short_parts(Order order) {
+  return order.denominator == 1 ||
+         std::uint64_t{order.numerator} * order.denominator < (std::uint64_t{1} << 19U);
+}
+
 /// Whether a filter finds its angles alone.
 template <class Real, std::size_t MaxPairs>
 [[nodiscard]] constexpr bool has_own_angle(const RippleFilterConfig<Real, MaxPairs>& config) {
   bool own = config.angle_to_torque_delay_s != Real(0) || config.frozen_count > 0;
   for (std::size_t a = 0; a < config.order_count; ++a) {
-    own = own || config.orders[a].order.denominator != 1;
+    own = own || !has_short_parts(config.orders[a].order);
   }
   return own;
 }
