@@ -18,6 +18,7 @@
 
 #include "strainwave/batch.hpp"
 #include "strainwave/batch_layout.hpp"
+#include "strainwave/batch_ripple_angles.hpp"
 #include "strainwave/batch_ripple_lanes.hpp"
 #include "strainwave/batch_threads.hpp"
 #include "strainwave/lanes.hpp"
@@ -110,8 +111,7 @@ template <class Real, std::size_t Pairs>
 struct RippleKernel {
   void (*filter_tile)(RippleLanes<Real, Pairs>&, const RippleTile<Real>&,
                       const RippleAlone&) = nullptr;
-  void (*convert_angles)(const double*, std::size_t, Real*, Real*) = nullptr;
-  void (*convert_cycles)(const double*, std::size_t, Order, Real*) = nullptr;
+  ConvertAngles<Real> convert_angles = nullptr;
 };
 
 template <class Real, std::size_t Pairs>
@@ -119,18 +119,15 @@ template <class Real, std::size_t Pairs>
   switch (level) {
 #if STRAINWAVE_HAS_X86_LEVELS
     case VectorLevel::x86_64_v2:
-      return {level_v2::filter_ripple_tile<Real, Pairs>, level_v2::convert_angles<Real>,
-              level_v2::convert_cycles<Real>};
+      return {level_v2::filter_ripple_tile<Real, Pairs>, level_v2::convert_angles<Real>};
     case VectorLevel::x86_64_v3:
-      return {level_v3::filter_ripple_tile<Real, Pairs>, level_v3::convert_angles<Real>,
-              level_v3::convert_cycles<Real>};
+      return {level_v3::filter_ripple_tile<Real, Pairs>, level_v3::convert_angles<Real>};
     case VectorLevel::x86_64_v4:
-      return {level_v4::filter_ripple_tile<Real, Pairs>, level_v4::convert_angles<Real>,
-              level_v4::convert_cycles<Real>};
+      return {level_v4::filter_ripple_tile<Real, Pairs>, level_v4::convert_angles<Real>};
 #elif STRAINWAVE_HAS_LANES
     case VectorLevel::portable:
-      return {level_portable::filter_ripple_tile<Real, Pairs>, level_portable::convert_angles<Real>,
-              level_portable::convert_cycles<Real>};
+      return {level_portable::filter_ripple_tile<Real, Pairs>,
+              level_portable::convert_angles<Real>};
 #endif
     default:
       return {};
@@ -185,6 +182,7 @@ class RippleBlockRun {
                  const RippleKernel<Real, Pairs>& kernel)
       : block_(block), kernel_(kernel) {
     put_layout(lanes_, kind.orders, kind.order_count);
+    angles_.put_orders(block, kind.order_count);
     for (std::size_t lane = 0; lane < width; ++lane) {
       if (block.configs[lane] == nullptr) {
         continue;
@@ -192,10 +190,6 @@ class RippleBlockRun {
       put_config(lanes_, lane, *block.configs[lane]);
       put_state(lanes_, lane, *block.configs[lane], *block.states[lane]);
       const RippleChannel<Real>& channel = block.channels[lane];
-      for (std::size_t a = 0; a < kind.order_count; ++a) {
-        has_denominator_[a] =
-            has_denominator_[a] || block.configs[lane]->orders[a].order.denominator != 1;
-      }
       has_expected_ = has_expected_ || channel.expected_torque_Nm != nullptr;
       has_interval_ = has_interval_ || channel.interval_s != nullptr;
       has_status_ = has_status_ || channel.status != nullptr;
@@ -245,24 +239,11 @@ class RippleBlockRun {
 
   void gather_tile(std::size_t count) {
     const Real* torques[width];
-    const Real* turns[width];
-    const Real* fractions[width];
     for (std::size_t lane = 0; lane < width; ++lane) {
-      const RippleChannel<Real>& channel = block_.channels[from_[lane]];
-      torques[lane] = channel.measured_torque_Nm + at_;
-      turns[lane] = turns_of_[from_[lane]];
-      fractions[lane] = fractions_of_[from_[lane]];
-      if (from_[lane] == lane) {
-        kernel_.convert_angles(channel.motor_angle_rad + at_, count, turns_of_[lane],
-                               fractions_of_[lane]);
-      }
+      torques[lane] = block_.channels[from_[lane]].measured_torque_Nm + at_;
     }
     gather(torques, 0, count, measured_.values);
-    gather(turns, 0, count, turns_.values);
-    gather(fractions, 0, count, fractions_.values);
     tile_ = {.measured_torque_Nm = measured_.values,
-             .turns = turns_.values,
-             .fraction = fractions_.values,
              .interval_s = periods_s_,
              .interval_stride = 0,
              .expected_torque_Nm = zero_row<Real>,
@@ -270,29 +251,10 @@ class RippleBlockRun {
              .status = has_status_ ? status_.values : nullptr,
              .first_sample = at_,
              .sample_count = count};
-    gather_cycles(count);
+    angles_.gather_into(tile_, kernel_.convert_angles, block_, from_, at_, count);
     gather_rest(count);
     for (std::size_t i = 0; i < ripple_outputs; ++i) {
       tile_.outputs[i] = has_output_[i] ? outputs_[i].values : nullptr;
-    }
-  }
-
-  /// Of orders with a denominator: their cycles depend on whole turns as well.
-  void gather_cycles(std::size_t count) {
-    for (std::size_t a = 0; a < lanes_.order_count; ++a) {
-      if (!has_denominator_[a]) {
-        continue;
-      }
-      const Real* fractions[width];
-      for (std::size_t lane = 0; lane < width; ++lane) {
-        fractions[lane] = fractions_of_[from_[lane]];
-        if (from_[lane] == lane) {
-          kernel_.convert_cycles(block_.channels[lane].motor_angle_rad + at_, count,
-                                 block_.configs[lane]->orders[a].order, fractions_of_[lane]);
-        }
-      }
-      gather(fractions, 0, count, order_fractions_[a].values);
-      tile_.order_fraction[a] = order_fractions_[a].values;
     }
   }
 
@@ -456,9 +418,6 @@ class RippleBlockRun {
   Lanes lanes_ = {};
   alignas(64) Real periods_s_[width] = {};
   Tile<Real> measured_;
-  Tile<Real> turns_;
-  Tile<Real> fractions_;
-  Tile<Real> order_fractions_[Pairs];
   Tile<Real> intervals_;
   Tile<Real> expected_;
   Tile<Real> outputs_[ripple_outputs];
@@ -468,13 +427,11 @@ class RippleBlockRun {
   RippleTile<Real> tile_ = {};
   std::size_t at_ = 0;  ///< first sample of the tile
   std::size_t from_[width] = {};
-  bool has_denominator_[Pairs] = {};
   bool has_expected_ = false;
   bool has_interval_ = false;
   bool has_status_ = false;
   bool has_output_[ripple_outputs] = {};
-  Real turns_of_[width][tile_samples];
-  Real fractions_of_[width][tile_samples];
+  RippleAngles<Real, Pairs> angles_;
 
   RippleReading<Real> readings_[width] = {};
   std::size_t alone_samples_[width] = {};

@@ -87,51 +87,34 @@ STRAINWAVE_INLINE Lanes<double> turns_of(Lanes<double> angle_rad) {
 #endif
 }
 
-/// order_fraction() of one channel's angles, for orders that pass has_short_parts(): every number
-/// is a whole one that double holds, so that it is exact.
+/// What a conversion stores: the whole numbers whose last digits are those of `digits`, which are
+/// numbers so large that their last digit is one.
 template <class Real>
-STRAINWAVE_KERNEL void convert_cycles(const double* angle_rad, std::size_t count, Order order,
-                                      Real* fraction) {
+STRAINWAVE_INLINE void store_digits(Lanes<double> digits, std::size_t count, Real* to) {
   using Wide = Lanes<double>;
-  using Wides = LaneVectors<double>::Wholes;
-  using Narrow [[gnu::vector_size(Wide::count * sizeof(typename LaneVectors<Real>::Whole))]] =
-      typename LaneVectors<Real>::Whole;
+  using Narrow [[gnu::vector_size(Wide::count * sizeof(Real))]] = typename LaneVectors<Real>::Whole;
   using Low [[gnu::vector_size(Wide::count * sizeof(std::int32_t))]] = std::int32_t;
-  const Wide rounder(6755399441055744.0);
-  const Wide numerator(static_cast<double>(order.numerator));
-  const Wide denominator(static_cast<double>(order.denominator));
-  const Wide per_denominator(1.0 / static_cast<double>(order.denominator));
-  for (std::size_t k = 0; k < count; k += Wide::count) {
-    const std::size_t left = count - k < Wide::count ? count - k : Wide::count;
-    double here[Wide::count] = {};
-    __builtin_memcpy(here, angle_rad + k, left * sizeof(double));
-    const Wide in_turns = turns_of(Wide::load(here));
-    const Wide whole = (in_turns + rounder) - rounder;
-    const Wide units = ((in_turns - whole) * Wide(4294967296.0) + rounder) - rounder;
-    // Whole multiples of the denominator are whole cycles, whichever number of them is taken off.
-    const Wide multiple = (whole * per_denominator + rounder) - rounder;
-    const Wide angle = (whole - multiple * denominator) * Wide(4294967296.0) + units;
-    const Wide cycles = angle * numerator / denominator;
-    const Wide nearest = (cycles + rounder) - rounder;
-    const Wide below = select(nearest > cycles, nearest - Wide(1.0), nearest) + rounder;
-    const auto low = __builtin_convertvector(reinterpret_cast<Wides>(below.v), Low);
-    const Narrow units_here = __builtin_convertvector(low, Narrow);
-    __builtin_memcpy(fraction + k, &units_here, left * sizeof(Real));
+  const auto low =
+      __builtin_convertvector(reinterpret_cast<LaneVectors<double>::Wholes>(digits.v), Low);
+  const Narrow narrow = __builtin_convertvector(low, Narrow);
+  if (count == Wide::count) {
+    __builtin_memcpy(to, &narrow, sizeof(narrow));
+  } else {
+    __builtin_memcpy(to, &narrow, count * sizeof(Real));
   }
 }
 
-/// Angles of one channel as nearest turns and fraction; turns that no lane takes where they are out
-/// of reach.
+/// Angles of one channel as nearest turns and fraction, turns that no lane takes where they are out
+/// of reach; and order_fraction() of orders that pass has_short_parts(), exactly: every number is
+/// one that double holds, and the quotient's error is too small to reach a whole one.
 template <class Real>
 STRAINWAVE_KERNEL void convert_angles(const double* angle_rad, std::size_t count, Real* turns,
-                                      Real* fraction) {
-  using Whole = LaneVectors<Real>::Whole;
+                                      Real* fraction, const OrderCycles<Real>* orders,
+                                      std::size_t order_count) {
   using Wide = Lanes<double>;
-  using Wides = LaneVectors<double>::Wholes;
-  using Narrow [[gnu::vector_size(Wide::count * sizeof(Whole))]] = Whole;
-  using Low [[gnu::vector_size(Wide::count * 4)]] = std::int32_t;
   // Rounding to a whole number by one so large that its last digit is one; the digits are its bits.
   const Wide rounder = 6755399441055744.0;
+  const Wide units_per_turn = 4294967296.0;
   double rest[Wide::count];
   for (std::size_t k = 0; k < count; k += Wide::count) {
     const std::size_t left = count - k < Wide::count ? count - k : Wide::count;
@@ -143,16 +126,24 @@ STRAINWAVE_KERNEL void convert_angles(const double* angle_rad, std::size_t count
       from = rest;
     }
     const Wide in_turns = turns_of(Wide::load(from));
-    const Wide whole = in_turns + rounder;
-    const Wide units = (in_turns - (whole - rounder)) * Wide(4294967296.0) + rounder;
+    const Wide turns_digits = in_turns + rounder;
+    const Wide whole = turns_digits - rounder;
+    const Wide units_digits = fused(in_turns - whole, units_per_turn, rounder);
     const auto reachable = absolute(in_turns) < Wide(static_cast<double>(detail::most_lane_turns));
-    const Wide taken = select(reachable, whole, rounder - Wide(2147483648.0));
-    const auto low_turns = __builtin_convertvector(reinterpret_cast<Wides>(taken.v), Low);
-    const auto low_units = __builtin_convertvector(reinterpret_cast<Wides>(units.v), Low);
-    const Narrow turns_here = __builtin_convertvector(low_turns, Narrow);
-    const Narrow units_here = __builtin_convertvector(low_units, Narrow);
-    __builtin_memcpy(turns + k, &turns_here, left * sizeof(Real));
-    __builtin_memcpy(fraction + k, &units_here, left * sizeof(Real));
+    store_digits(select(reachable, turns_digits, rounder - Wide(2147483648.0)), left, turns + k);
+    store_digits(units_digits, left, fraction + k);
+    for (std::size_t i = 0; i < order_count; ++i) {
+      const Wide denominator = orders[i].denominator;
+      const Wide per_denominator = orders[i].per_denominator;
+      // Whole multiples of the denominator are whole cycles, however many of them are taken off.
+      const Wide multiple = fused(whole, per_denominator, rounder) - rounder;
+      const Wide angle =
+          fused(fused_minus(multiple, denominator, whole), units_per_turn, units_digits - rounder);
+      // Half a unit more, so that no quotient is near a whole number; half a cycle less to round.
+      const Wide units = fused(angle, Wide(orders[i].numerator), Wide(0.5));
+      store_digits(fused(units, per_denominator, Wide(-0.5)) + rounder, left,
+                   orders[i].fraction + k);
+    }
   }
 }
 
@@ -332,27 +323,23 @@ struct RippleGroup {
 
   // ---- frame ------------------------------------------------------------------------------------
 
-  template <std::size_t P>
-  [[nodiscard]] STRAINWAVE_INLINE L offset() const {
-    return factors[memory.factor_of[P]] - load(memory.frames[P]);
-  }
-  template <std::size_t P>
-  [[nodiscard]] STRAINWAVE_INLINE Mask is_too_far() const {
-    return absolute(offset<P>()) > L(memory.widest_offset[P]);
+  template <std::size_t... P>
+  STRAINWAVE_INLINE void find_offsets(L* offsets, std::index_sequence<P...>) const {
+    ((offsets[P] = factors[memory.factor_of[P]] - load(memory.frames[P])), ...);
   }
   template <std::size_t... P>
-  [[nodiscard]] STRAINWAVE_INLINE Mask is_any_too_far(std::index_sequence<P...>) const {
-    return (is_too_far<P>() | ...);
+  [[nodiscard]] STRAINWAVE_INLINE Mask is_any_too_far(const L* offsets,
+                                                      std::index_sequence<P...>) const {
+    return ((absolute(offsets[P]) > L(memory.widest_offset[P])) | ...);
   }
   template <std::size_t P>
-  STRAINWAVE_INLINE void enter_pair() {
-    const L factor = offset<P>();
-    h[2 * P] = factor * cosines[memory.order_of[P]];
-    h[2 * P + 1] = factor * sines[memory.order_of[P]];
+  STRAINWAVE_INLINE void enter_pair(L offset) {
+    h[2 * P] = offset * cosines[memory.order_of[P]];
+    h[2 * P + 1] = offset * sines[memory.order_of[P]];
   }
   template <std::size_t... P>
-  STRAINWAVE_INLINE void enter_pairs(std::index_sequence<P...>) {
-    (enter_pair<P>(), ...);
+  STRAINWAVE_INLINE void enter_pairs(const L* offsets, std::index_sequence<P...>) {
+    (enter_pair<P>(offsets[P]), ...);
   }
 
   /// follow() and enter_frame() of ripple_covariance.hpp.  Lanes that will have to move soon do so
@@ -360,15 +347,24 @@ struct RippleGroup {
   /// the other they would move at every few samples, and a lane shall not depend on another one.
   STRAINWAVE_INLINE void enter_frame() {
     const std::size_t turn = (tile.first_sample + k) % samples_between_moves;
-    if (turn < memory.order_count) {
+    if (turn < memory.order_count && memory.orders[turn].terms > 0) {
       follow(turn, L(Real(0.5)), usual);
-    } else if ((is_any_too_far(by_pair) & usual).any()) [[unlikely]] {
-      Mask left = usual;
-      for (std::size_t a = 0; a < memory.order_count; ++a) {
-        left = left & !follow(a, L(Real(1)), left);
-      }
     }
-    enter_pairs(by_pair);
+    L offsets[Pairs];
+    find_offsets(offsets, by_pair);
+    if ((is_any_too_far(offsets, by_pair) & usual).any()) [[unlikely]] {
+      follow_all();
+      find_offsets(offsets, by_pair);
+    }
+    enter_pairs(offsets, by_pair);
+  }
+
+  /// One order of each lane that has gone too far.
+  STRAINWAVE_INLINE void follow_all() const {
+    Mask left = usual;
+    for (std::size_t a = 0; a < memory.order_count; ++a) {
+      left = left & !follow(a, L(Real(1)), left);
+    }
   }
 
   /// Moves the lanes, of those given, whose factors are beyond a share of the widest offset.
@@ -390,6 +386,12 @@ struct RippleGroup {
       }
       move_row(2 * order.first_pair, order.terms, steps);
       move_row(2 * order.first_pair + 1, order.terms, steps);
+      L weight = Real(1);
+      for (std::size_t t = 0; t < order.terms; ++t) {
+        const L factor = load(memory.frames[order.first_pair + 1 + t]);
+        weight = fused(factor, factor, weight);
+      }
+      store(load(memory.half_per_limit) / weight, memory.half_per_limits[order.first_pair]);
     }
     return too_far;
   }
@@ -484,19 +486,6 @@ struct RippleGroup {
     (project_diagonal<D>(sums, std::make_index_sequence<coefficients - D>{}), ...);
   }
 
-  template <std::size_t I, std::size_t... J>
-  STRAINWAVE_INLINE void measure_row(L gain, const L* with, std::index_sequence<J...>) const {
-    (store(fused_minus(gain, with[J], load(memory.covariance_Nm2[detail::lane_element(I, J)])),
-           memory.covariance_Nm2[detail::lane_element(I, J)]),
-     ...);
-  }
-  /// P - P h h'P / s.
-  template <std::size_t... I>
-  STRAINWAVE_INLINE void measure_coefficients(L per_variance, std::index_sequence<I...>) const {
-    const L with[coefficients] = {row[I]...};
-    (measure_row<I>(with[I] * per_variance, with, std::make_index_sequence<I + 1>{}), ...);
-  }
-
   /// T's row after the measurement, see measure_torque(); puts P h with T into `row`.
   template <std::size_t... I>
   STRAINWAVE_INLINE void measure_torque(L left, const L* ripple, const L* torque,
@@ -564,8 +553,7 @@ struct RippleGroup {
     if (moving.any()) {
       const L learning = select(moving, per_variance, L(Real(0)));
       learn(learning * innovation_Nm, by_coefficient);
-      measure_coefficients(learning, by_coefficient);
-      add_noise(gained_Nm2);
+      measure_pairs(learning, gained_Nm2, by_pair);
     }
   }
 
@@ -620,65 +608,70 @@ struct RippleGroup {
           const L factor = factors[static_cast<std::size_t>(layout.factors[t])];
           weight = fused(factor, factor, weight);
         }
-        each_Nm2 = each_Nm2 / weight;
+        each_Nm2 = each_Nm2 * reciprocal(weight);
       }
       gained_Nm2[a] = select(moving, each_Nm2, L(Real(0)));
     }
   }
 
-  STRAINWAVE_INLINE void add(std::size_t i, std::size_t j, L value_Nm2) const {
-    add_to(memory.covariance_Nm2[detail::lane_element(i, j)], value_Nm2);
+  // ---- coefficients' block, written out by pairs ------------------------------------------------
+
+  /// A row of P - P h h'P / s up to the pair's own columns.
+  template <std::size_t I, std::size_t... J>
+  STRAINWAVE_INLINE void measure_row([[maybe_unused]] L gain, std::index_sequence<J...>) const {
+    (store(measured<I, J>(gain), memory.covariance_Nm2[detail::lane_element(I, J)]), ...);
   }
+  template <std::size_t I, std::size_t J>
+  [[nodiscard]] STRAINWAVE_INLINE L measured(L gain) const {
+    return fused_minus(gain, row[J], load(memory.covariance_Nm2[detail::lane_element(I, J)]));
+  }
+
   /// share_of_noise() of ripple_covariance.hpp; lanes that are given nothing are remembered.
-  [[nodiscard]] STRAINWAVE_INLINE L share_of_noise(std::size_t i, L half_per_limit) {
-    const L variances_Nm2 = load(memory.covariance_Nm2[detail::lane_element(i, i)]) +
-                            load(memory.covariance_Nm2[detail::lane_element(i + 1, i + 1)]);
-    const L share = L(Real(1)) - variances_Nm2 * half_per_limit;
+  [[nodiscard]] STRAINWAVE_INLINE L share_of_noise(L variances_Nm2, L half_per_limit) {
+    const L share = fused_minus(variances_Nm2, half_per_limit, L(Real(1)));
     const Mask some = share > L(Real(0));
     limited = limited | !some;
     return select(some, share, L(Real(0)));
   }
 
-  /// add_noise() of ripple_covariance.hpp: for further pairs, then for first ones.
+  /// A pair's rows after the measurement, and its process noise, add_noise() of
+  /// ripple_covariance.hpp, while they are at hand.  From the last pair to the first: what an
+  /// order's further pairs have gained, `of_further_Nm2`, its first one gains as well.
   template <std::size_t P>
-  STRAINWAVE_INLINE void add_to_further(const L* gained_Nm2, L* weights, L* sums_Nm2) {
+  STRAINWAVE_INLINE void measure_pair(L learning, const L* gained_Nm2, L& of_further_Nm2) {
     constexpr std::size_t i = 2 * P;
-    const std::size_t first = memory.first_of[P];
-    if (first == P) {
-      weights[P] = Real(1);
-      sums_Nm2[P] = Real(0);
+    const auto factor_of = static_cast<RippleFactor>(memory.factor_of[P]);
+    if (factor_of == RippleFactor::none) {
       return;
     }
-    const L factor = load(memory.frames[P]);
-    const L its_Nm2 =
-        gained_Nm2[memory.order_of[P]] * share_of_noise(i, load(memory.half_per_limit));
-    const L with_first_Nm2 = factor * its_Nm2;
-    add(i, 2 * first, with_first_Nm2);
-    add(i + 1, 2 * first + 1, with_first_Nm2);
-    add(i, i, its_Nm2);
-    add(i + 1, i + 1, its_Nm2);
-    weights[first] = fused(factor, factor, weights[first]);
-    sums_Nm2[first] = fused(factor, with_first_Nm2, sums_Nm2[first]);
-  }
-  template <std::size_t P>
-  STRAINWAVE_INLINE void add_to_first(const L* gained_Nm2, const L* weights, const L* sums_Nm2) {
-    constexpr std::size_t i = 2 * P;
-    if (memory.factor_of[P] == 0) {
-      const L share = share_of_noise(i, load(memory.half_per_limit) / weights[P]);
-      const L sum_Nm2 = fused(gained_Nm2[memory.order_of[P]], share, sums_Nm2[P]);
-      add(i, i, sum_Nm2);
-      add(i + 1, i + 1, sum_Nm2);
+    constexpr auto before = std::make_index_sequence<i>{};
+    const L cosine_gain = row[i] * learning;
+    const L sine_gain = row[i + 1] * learning;
+    measure_row<i>(cosine_gain, before);
+    measure_row<i + 1>(sine_gain, before);
+    store(measured<i + 1, i>(sine_gain), memory.covariance_Nm2[detail::lane_element(i + 1, i)]);
+    const L cosine_Nm2 = measured<i, i>(cosine_gain);
+    const L sine_Nm2 = measured<i + 1, i + 1>(sine_gain);
+    const L share = share_of_noise(cosine_Nm2 + sine_Nm2, load(memory.half_per_limits[P]));
+    L its_Nm2 = gained_Nm2[memory.order_of[P]] * share;
+    if (factor_of == RippleFactor::one) {
+      its_Nm2 = its_Nm2 + of_further_Nm2;
+      of_further_Nm2 = Real(0);
+    } else {
+      const std::size_t first = 2 * memory.first_of[P];
+      const L factor = load(memory.frames[P]);
+      const L with_first_Nm2 = factor * its_Nm2;
+      add_to(memory.covariance_Nm2[detail::lane_element(i, first)], with_first_Nm2);
+      add_to(memory.covariance_Nm2[detail::lane_element(i + 1, first + 1)], with_first_Nm2);
+      of_further_Nm2 = fused(factor, with_first_Nm2, of_further_Nm2);
     }
+    store(cosine_Nm2 + its_Nm2, memory.covariance_Nm2[detail::lane_element(i, i)]);
+    store(sine_Nm2 + its_Nm2, memory.covariance_Nm2[detail::lane_element(i + 1, i + 1)]);
   }
   template <std::size_t... P>
-  STRAINWAVE_INLINE void add_to_pairs(const L* gained_Nm2, std::index_sequence<P...>) {
-    L weights[Pairs];
-    L sums_Nm2[Pairs];
-    (add_to_further<P>(gained_Nm2, weights, sums_Nm2), ...);
-    (add_to_first<P>(gained_Nm2, weights, sums_Nm2), ...);
-  }
-  STRAINWAVE_INLINE void add_noise(const L* gained_Nm2) {
-    add_to_pairs(gained_Nm2, by_pair);
+  STRAINWAVE_INLINE void measure_pairs(L learning, const L* gained_Nm2, std::index_sequence<P...>) {
+    L of_further_Nm2 = Real(0);
+    (measure_pair<Pairs - 1 - P>(learning, gained_Nm2, of_further_Nm2), ...);
     limited = limited & moving;
   }
 

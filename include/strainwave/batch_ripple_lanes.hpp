@@ -60,6 +60,7 @@ struct alignas(64) RippleLanes {
   Row torque_state_Nm;
   Row coefficients_Nm[coefficients];  ///< an order's first pair: its ripple in the frame
   Row frames[Pairs];                  ///< factor of each further pair; 0 for the others
+  Row half_per_limits[Pairs];         ///< of a further pair half_per_limit, of a first one less
   Row covariance_Nm2[coefficients * (coefficients + 1) / 2];
   Row torque_row_Nm2[coefficients];
   Row torque_variance_Nm2;
@@ -133,6 +134,15 @@ struct RippleTile {
   Real* status = nullptr;        ///< as numbers, which hold them exactly
   std::size_t first_sample = 0;  ///< since the call began
   std::size_t sample_count = 0;
+};
+
+/// Where an order's cycles go that depend on whole turns as well.
+template <class Real>
+struct OrderCycles {
+  double numerator = 1.0;
+  double denominator = 1.0;
+  double per_denominator = 1.0;
+  Real* fraction = nullptr;  ///< bits of whole numbers, units of 2^-32 cycle
 };
 
 /// What lanes cannot do: called with the first lane of a group, how many they
@@ -268,17 +278,21 @@ inline void put_state(RippleLanes<Real, Pairs>& lanes, std::size_t lane,
       lanes.covariance_Nm2[lane_element(i, j)][lane] = is_used ? element_of(p, i, j) : Real(0);
     }
     lanes.frames[i / 2][lane] = Real(0);
+    lanes.half_per_limits[i / 2][lane] = lanes.half_per_limit[lane];
   }
   for (std::size_t a = 0; a < lanes.order_count; ++a) {
+    const std::size_t first = lanes.orders[a].first_pair;
+    Real weight = Real(1);
     for (std::size_t t = 0; t < lanes.orders[a].terms; ++t) {
-      const std::size_t first = lanes.orders[a].first_pair;
       const std::size_t pair = first + 1 + t;
       lanes.frames[pair][lane] = p.frames[a][t];
+      weight += p.frames[a][t] * p.frames[a][t];
       for (std::size_t side = 0; side < 2; ++side) {
         lanes.coefficients_Nm[2 * first + side][lane] +=
             p.frames[a][t] * state.states_Nm[1 + 2 * pair + side];
       }
     }
+    lanes.half_per_limits[first][lane] = lanes.half_per_limit[lane] / weight;
   }
   lanes.torque_state_Nm[lane] = state.states_Nm[0];
   lanes.torque_variance_Nm2[lane] = p.torque_variance_Nm2;

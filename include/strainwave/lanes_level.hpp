@@ -194,6 +194,19 @@ STRAINWAVE_INLINE Lanes<Real> larger(Lanes<Real> a, Lanes<Real> b) {
 #endif
 }
 
+/// 1 / value to the last digit or two, where that is faster than a division.
+template <class Real>
+STRAINWAVE_INLINE Lanes<Real> reciprocal(Lanes<Real> value) {
+  using L = Lanes<Real>;
+#if STRAINWAVE_LANE_LEVEL == 4
+  if constexpr (sizeof(Real) == 4) {
+    const L near = _mm512_maskz_rcp14_ps(LaneMask<Real>::every, value.v);
+    return fused(fused_minus(value, near, L(Real(1))), near, near);
+  }
+#endif
+  return L(Real(1)) / value;
+}
+
 template <class Real>
 STRAINWAVE_INLINE Lanes<Real> square_root(Lanes<Real> value) {
 #if STRAINWAVE_LANE_LEVEL == 4
