@@ -25,6 +25,12 @@
 #include "strainwave/ripple_filter.hpp"
 
 #if STRAINWAVE_HAS_LANES
+#define STRAINWAVE_LEVEL_FILE "strainwave/batch_ripple_angle_kernel.hpp"
+#include "strainwave/lanes_each_level.hpp"
+#undef STRAINWAVE_LEVEL_FILE
+#define STRAINWAVE_LEVEL_FILE "strainwave/batch_ripple_frame_kernel.hpp"
+#include "strainwave/lanes_each_level.hpp"
+#undef STRAINWAVE_LEVEL_FILE
 #define STRAINWAVE_LEVEL_FILE "strainwave/batch_ripple_kernel.hpp"
 #include "strainwave/lanes_each_level.hpp"
 #undef STRAINWAVE_LEVEL_FILE

@@ -13,141 +13,9 @@
   [[gnu::noinline, gnu::no_sanitize("address"), gnu::no_sanitize("undefined")]] inline
 
 template <class Real>
-using WholeLanes = LaneVectors<Real>::Wholes;
-
-template <class Real>
-STRAINWAVE_INLINE WholeLanes<Real> load_whole(const typename LaneVectors<Real>::Whole* from) {
-  WholeLanes<Real> whole;
-  __builtin_memcpy(&whole, from, sizeof(whole));
-  return whole;
-}
-template <class Real>
-STRAINWAVE_INLINE WholeLanes<Real> load_whole(const Real* bits) {
-  WholeLanes<Real> whole;
-  __builtin_memcpy(&whole, bits, sizeof(whole));
-  return whole;
-}
-template <class Real>
-STRAINWAVE_INLINE void store_whole(WholeLanes<Real> whole, typename LaneVectors<Real>::Whole* to) {
-  __builtin_memcpy(to, &whole, sizeof(whole));
-}
-
-/// The lower 32 bits with their sign: a fraction of a turn wraps there.
-template <class Real>
-STRAINWAVE_INLINE WholeLanes<Real> wrapped(WholeLanes<Real> whole) {
-  if constexpr (sizeof(Real) == 4) {
-    return whole;
-  } else {
-    return (whole << 32) >> 32;
-  }
-}
-
-template <class Real>
-STRAINWAVE_INLINE Lanes<Real> to_lanes(WholeLanes<Real> whole) {
-  return Lanes<Real>(__builtin_convertvector(whole, typename LaneVectors<Real>::Reals));
-}
-
-template <class Real>
 STRAINWAVE_INLINE Lanes<Real> one_where(LaneMask<Real> mask) {
   return select(mask, Lanes<Real>(Real(1)), Lanes<Real>(Real(0)));
 }
-
-// NOLINTBEGIN(cppcoreguidelines-pro-type-reinterpret-cast): bits of vectors, as of lanes_level.hpp.
-
-/// Cosine and sine of fractions of a turn, either side of zero, in units of 2^-32.
-template <class Real>
-STRAINWAVE_INLINE CosSin<Lanes<Real>> cos_sin_of_fraction(WholeLanes<Real> fraction) {
-  using L = Lanes<Real>;
-  using Wholes = WholeLanes<Real>;
-  const WholeLanes<Real> eighth = WholeLanes<Real>{} + (1 << 29);
-  const Wholes quarters = wrapped<Real>(fraction + eighth) >> 30;
-  const Wholes rest = wrapped<Real>(fraction - (quarters << 30));
-  const CosSin<L> part =
-      cos_sin_reduced(to_lanes<Real>(rest) * L(two_pi<Real> / Real(4294967296.0)));
-  const Wholes odd = -(quarters & 1);
-  constexpr int sign_shift = 8 * static_cast<int>(sizeof(Real)) - 2;
-  const Wholes sine_sign = (quarters & 2) << sign_shift;
-  const Wholes cosine_sign = ((quarters + 1) & 2) << sign_shift;
-  const auto cosine_bits = reinterpret_cast<Wholes>(part.cosine.v);
-  const auto sine_bits = reinterpret_cast<Wholes>(part.sine.v);
-  const Wholes turned_cosine = ((cosine_bits & ~odd) | (sine_bits & odd)) ^ cosine_sign;
-  const Wholes turned_sine = ((sine_bits & ~odd) | (cosine_bits & odd)) ^ sine_sign;
-  using Vector = L::Vector;
-  return {L(reinterpret_cast<Vector>(turned_cosine)), L(reinterpret_cast<Vector>(turned_sine))};
-}
-
-/// The quotient by a whole turn; by two products where they are rounded once, which is faster.
-STRAINWAVE_INLINE Lanes<double> turns_of(Lanes<double> angle_rad) {
-#if STRAINWAVE_LANE_LEVEL >= 3
-  const Lanes<double> per_turn = 1.0 / two_pi<double>;
-  const Lanes<double> turns = angle_rad * per_turn;
-  return fused(fused_minus(turns, Lanes<double>(two_pi<double>), angle_rad), per_turn, turns);
-#else
-  return angle_rad / Lanes<double>(two_pi<double>);
-#endif
-}
-
-/// What a conversion stores: the whole numbers whose last digits are those of `digits`, which are
-/// numbers so large that their last digit is one.
-template <class Real>
-STRAINWAVE_INLINE void store_digits(Lanes<double> digits, std::size_t count, Real* to) {
-  using Wide = Lanes<double>;
-  using Narrow [[gnu::vector_size(Wide::count * sizeof(Real))]] = typename LaneVectors<Real>::Whole;
-  using Low [[gnu::vector_size(Wide::count * sizeof(std::int32_t))]] = std::int32_t;
-  const auto low =
-      __builtin_convertvector(reinterpret_cast<LaneVectors<double>::Wholes>(digits.v), Low);
-  const Narrow narrow = __builtin_convertvector(low, Narrow);
-  if (count == Wide::count) {
-    __builtin_memcpy(to, &narrow, sizeof(narrow));
-  } else {
-    __builtin_memcpy(to, &narrow, count * sizeof(Real));
-  }
-}
-
-/// Angles of one channel as nearest turns and fraction, turns that no lane takes where they are out
-/// of reach; and order_fraction() of orders that pass has_short_parts(), exactly: every number is
-/// one that double holds, and the quotient's error is too small to reach a whole one.
-template <class Real>
-STRAINWAVE_KERNEL void convert_angles(const double* angle_rad, std::size_t count, Real* turns,
-                                      Real* fraction, const OrderCycles<Real>* orders,
-                                      std::size_t order_count) {
-  using Wide = Lanes<double>;
-  // Rounding to a whole number by one so large that its last digit is one; the digits are its bits.
-  const Wide rounder = 6755399441055744.0;
-  const Wide units_per_turn = 4294967296.0;
-  double rest[Wide::count];
-  for (std::size_t k = 0; k < count; k += Wide::count) {
-    const std::size_t left = count - k < Wide::count ? count - k : Wide::count;
-    const double* from = angle_rad + k;
-    if (left < Wide::count) {
-      for (std::size_t i = 0; i < Wide::count; ++i) {
-        rest[i] = i < left ? from[i] : 0.0;
-      }
-      from = rest;
-    }
-    const Wide in_turns = turns_of(Wide::load(from));
-    const Wide turns_digits = in_turns + rounder;
-    const Wide whole = turns_digits - rounder;
-    const Wide units_digits = fused(in_turns - whole, units_per_turn, rounder);
-    const auto reachable = absolute(in_turns) < Wide(static_cast<double>(detail::most_lane_turns));
-    store_digits(select(reachable, turns_digits, rounder - Wide(2147483648.0)), left, turns + k);
-    store_digits(units_digits, left, fraction + k);
-    for (std::size_t i = 0; i < order_count; ++i) {
-      const Wide denominator = orders[i].denominator;
-      const Wide per_denominator = orders[i].per_denominator;
-      // Whole multiples of the denominator are whole cycles, however many of them are taken off.
-      const Wide multiple = fused(whole, per_denominator, rounder) - rounder;
-      const Wide angle =
-          fused(fused_minus(multiple, denominator, whole), units_per_turn, units_digits - rounder);
-      // Half a unit more, so that no quotient is near a whole number; half a cycle less to round.
-      const Wide units = fused(angle, Wide(orders[i].numerator), Wide(0.5));
-      store_digits(fused(units, per_denominator, Wide(-0.5)) + rounder, left,
-                   orders[i].fraction + k);
-    }
-  }
-}
-
-// NOLINTEND(cppcoreguidelines-pro-type-reinterpret-cast)
 
 /// How often an order's lanes move their frames together.
 inline constexpr std::size_t samples_between_moves = 16;
@@ -159,6 +27,7 @@ struct RippleGroup {
   using Mask = LaneMask<Real>;
   using Wholes = WholeLanes<Real>;
   using Memory = RippleLanes<Real, Pairs>;
+  using Frames = RippleFrames<Real, Pairs>;
   static constexpr std::size_t coefficients = 2 * Pairs;
 
   L torque_Nm;
@@ -181,6 +50,7 @@ struct RippleGroup {
   L all_removed_Nm;
   L innovation_Nm;
   L variance_Nm2;
+  L smallest_share;  ///< of its process noise that a pair is given
 
   // NOLINTBEGIN(cppcoreguidelines-avoid-const-or-ref-data-members): a group lives for one sample.
   Memory& memory;
@@ -233,20 +103,23 @@ struct RippleGroup {
     const L typical_s = load(memory.typical_interval_s);
     const L largest_Nm = Real(largest_usable_torque_Nm);
     const L old_speed_rad_s = load(memory.speed_rad_s);
-    usual = (load(memory.in_step) > L(Real(0))) & (absolute(torque_Nm) <= largest_Nm) &
-            (absolute(expected_Nm) <= largest_Nm) & (interval_s > L(Real(0))) &
-            (interval_s <= L(static_cast<Real>(detail::longest_interval_s))) &
-            (interval_s <= L(static_cast<Real>(detail::least_gap)) * typical_s) &
-            (absolute(on_record - turned) < L(Real(0.25))) &
-            (absolute(rotation_rad) <=
-             L(static_cast<Real>(detail::largest_motor_speed_rad_s)) * interval_s);
+    const L longest_s = static_cast<Real>(detail::longest_interval_s);
+    const L gap_s = L(static_cast<Real>(detail::least_gap)) * typical_s;
+    // In pairs: each comparison of a long row of them would wait for the one before.
+    const Mask sound = (absolute(torque_Nm) <= largest_Nm) & (absolute(expected_Nm) <= largest_Nm);
+    const Mask in_time =
+        (interval_s > L(Real(0))) & (interval_s <= select(gap_s < longest_s, gap_s, longest_s));
+    const Mask reachable = (absolute(on_record - turned) < L(Real(0.25))) &
+                           (absolute(rotation_rad) <=
+                            L(static_cast<Real>(detail::largest_motor_speed_rad_s)) * interval_s);
+    const Mask stands = (absolute(rotation_rad) <= L(Real(0))) &
+                        (interval_s < L(static_cast<Real>(detail::longest_hold_s)));
     const L measured_Nm = load(memory.measured_Nm);
-    const Mask held = (absolute(rotation_rad) <= L(Real(0))) & (torque_Nm <= measured_Nm) &
-                      (measured_Nm <= torque_Nm) &
-                      (interval_s < L(static_cast<Real>(detail::longest_hold_s))) &
-                      (absolute(old_speed_rad_s) * interval_s >=
-                       L(static_cast<Real>(detail::least_travel_of_a_held_sample_rad)));
-    usual = usual & !held;
+    const Mask repeats = (torque_Nm <= measured_Nm) & (measured_Nm <= torque_Nm);
+    const Mask held =
+        stands & (repeats & (absolute(old_speed_rad_s) * interval_s >=
+                             L(static_cast<Real>(detail::least_travel_of_a_held_sample_rad))));
+    usual = ((load(memory.in_step) > L(Real(0))) & sound) & (in_time & reachable) & !held;
     const L speed_now_rad_s = rotation_rad * load(memory.per_interval);
     speed_rad_s =
         fused(load(memory.speed_share), speed_now_rad_s - old_speed_rad_s, old_speed_rad_s);
@@ -342,82 +215,33 @@ struct RippleGroup {
     (enter_pair<P>(offsets[P]), ...);
   }
 
+  /// A copy, so that what is called does not know of the group: it would have to be in memory.
+  struct FactorRow {
+    L factors[ripple_factors];
+  };
+  [[nodiscard]] STRAINWAVE_INLINE FactorRow factors_now() const {
+    return {{factors[0], factors[1], factors[2], factors[3], factors[4]}};
+  }
+
   /// follow() and enter_frame() of ripple_covariance.hpp.  Lanes that will have to move soon do so
   /// together, an order at a time, at samples that none of them has a part in choosing: one after
   /// the other they would move at every few samples, and a lane shall not depend on another one.
   STRAINWAVE_INLINE void enter_frame() {
     const std::size_t turn = (tile.first_sample + k) % samples_between_moves;
     if (turn < memory.order_count && memory.orders[turn].terms > 0) {
-      follow(turn, L(Real(0.5)), usual);
+      const FactorRow now = factors_now();
+      follow_early(Frames{memory, lane, now.factors}, turn, usual);
     }
     L offsets[Pairs];
     find_offsets(offsets, by_pair);
     if ((is_any_too_far(offsets, by_pair) & usual).any()) [[unlikely]] {
-      follow_all();
+      const FactorRow now = factors_now();
+      follow_now(Frames{memory, lane, now.factors}, usual);
       find_offsets(offsets, by_pair);
     }
     enter_pairs(offsets, by_pair);
   }
 
-  /// One order of each lane that has gone too far.
-  STRAINWAVE_INLINE void follow_all() const {
-    Mask left = usual;
-    for (std::size_t a = 0; a < memory.order_count; ++a) {
-      left = left & !follow(a, L(Real(1)), left);
-    }
-  }
-
-  /// Moves the lanes, of those given, whose factors are beyond a share of the widest offset.
-  // NOLINTNEXTLINE(modernize-use-nodiscard): the moved lanes, for who wants to know.
-  STRAINWAVE_INLINE Mask follow(std::size_t a, L share, Mask lanes) const {
-    const RippleOrderLayout& order = memory.orders[a];
-    L steps[3];
-    Mask too_far = none();
-    for (std::size_t t = 0; t < order.terms; ++t) {
-      const std::size_t pair = order.first_pair + 1 + t;
-      steps[t] = factors[memory.factor_of[pair]] - load(memory.frames[pair]);
-      too_far = too_far | (absolute(steps[t]) > share * L(memory.widest_offset[pair]));
-    }
-    too_far = too_far & lanes;
-    if (too_far.any()) {
-      for (std::size_t t = 0; t < order.terms; ++t) {
-        steps[t] = select(too_far, steps[t], L(Real(0)));
-        add_to(memory.frames[order.first_pair + 1 + t], steps[t]);
-      }
-      move_row(2 * order.first_pair, order.terms, steps);
-      move_row(2 * order.first_pair + 1, order.terms, steps);
-      L weight = Real(1);
-      for (std::size_t t = 0; t < order.terms; ++t) {
-        const L factor = load(memory.frames[order.first_pair + 1 + t]);
-        weight = fused(factor, factor, weight);
-      }
-      store(load(memory.half_per_limit) / weight, memory.half_per_limits[order.first_pair]);
-    }
-    return too_far;
-  }
-
-  /// move_row() of ripple_covariance.hpp, and the ripple of the order itself.
-  STRAINWAVE_INLINE void move_row(std::size_t b, std::size_t terms, const L* steps) const {
-    L moved[coefficients];
-    for (std::size_t j = 0; j < coefficients; ++j) {
-      moved[j] = load(memory.covariance_Nm2[detail::lane_element(b, j)]);
-    }
-    for (std::size_t t = 0; t < terms; ++t) {
-      const std::size_t i = b + 2 * (t + 1);
-      for (std::size_t j = 0; j < coefficients; ++j) {
-        moved[j] =
-            fused(steps[t], load(memory.covariance_Nm2[detail::lane_element(i, j)]), moved[j]);
-      }
-      add_to(memory.torque_row_Nm2[b], steps[t] * load(memory.torque_row_Nm2[i]));
-      add_to(memory.coefficients_Nm[b], steps[t] * load(memory.coefficients_Nm[i]));
-    }
-    for (std::size_t t = 0; t < terms; ++t) {
-      moved[b] = fused(steps[t], moved[b + 2 * (t + 1)], moved[b]);
-    }
-    for (std::size_t j = 0; j < coefficients; ++j) {
-      store(moved[j], memory.covariance_Nm2[detail::lane_element(b, j)]);
-    }
-  }
   STRAINWAVE_INLINE void add_to(Real* numbers, L value) const {
     store(load(numbers) + value, numbers);
   }
@@ -626,12 +450,11 @@ struct RippleGroup {
     return fused_minus(gain, row[J], load(memory.covariance_Nm2[detail::lane_element(I, J)]));
   }
 
-  /// share_of_noise() of ripple_covariance.hpp; lanes that are given nothing are remembered.
+  /// share_of_noise() of ripple_covariance.hpp.
   [[nodiscard]] STRAINWAVE_INLINE L share_of_noise(L variances_Nm2, L half_per_limit) {
     const L share = fused_minus(variances_Nm2, half_per_limit, L(Real(1)));
-    const Mask some = share > L(Real(0));
-    limited = limited | !some;
-    return select(some, share, L(Real(0)));
+    smallest_share = smaller(share, smallest_share);
+    return larger(share, L(Real(0)));
   }
 
   /// A pair's rows after the measurement, and its process noise, add_noise() of
@@ -671,8 +494,9 @@ struct RippleGroup {
   template <std::size_t... P>
   STRAINWAVE_INLINE void measure_pairs(L learning, const L* gained_Nm2, std::index_sequence<P...>) {
     L of_further_Nm2 = Real(0);
+    smallest_share = Real(1);
     (measure_pair<Pairs - 1 - P>(learning, gained_Nm2, of_further_Nm2), ...);
-    limited = limited & moving;
+    limited = moving & (smallest_share <= L(Real(0)));
   }
 
   // ---- end --------------------------------------------------------------------------------------
@@ -690,7 +514,7 @@ struct RippleGroup {
     const L now_Nm = fused(load(memory.load_share), all_removed_Nm - load_Nm, load_Nm);
     store(now_Nm, memory.load_Nm);
     const L load_ratio = now_Nm * load(memory.per_rated_torque);
-    store(load_ratio / (L(Real(1)) + absolute(load_ratio)), memory.load_factor);
+    store(load_ratio * reciprocal(L(Real(1)) + absolute(load_ratio)), memory.load_factor);
     const L typical_s = load(memory.typical_interval_s);
     store(fused(interval_s - typical_s, L(Real(1) / Real(64)), typical_s),
           memory.typical_interval_s);

@@ -164,6 +164,25 @@ namespace detail {
   return row >= column ? row * (row + 1) / 2 + column : column * (column + 1) / 2 + row;
 }
 
+/// lane_element() of all of them, where it would take longer to compute.
+template <std::size_t Coefficients>
+struct LanePlaces {
+  std::uint8_t of[Coefficients][Coefficients] = {};
+
+  constexpr LanePlaces() {
+    static_assert(lane_element(Coefficients - 1, Coefficients - 1) <= 255);
+    for (std::size_t i = 0; i < Coefficients; ++i) {
+      for (std::size_t j = 0; j < Coefficients; ++j) {
+        of[i][j] = static_cast<std::uint8_t>(lane_element(i, j));
+      }
+    }
+  }
+};
+
+/// How far lanes let factors go from their frame: further than a filter alone, because some lane of
+/// a block moves at many a sample, and all of them wait for it.
+inline constexpr float widest_lane_offset = 2.0F * widest_frame_offset;
+
 /// Turns beyond this a lane does alone.
 inline constexpr std::int64_t most_lane_turns = std::int64_t{1} << 30U;
 
@@ -226,7 +245,7 @@ inline void put_layout(RippleLanes<Real, Pairs>& lanes, const RippleOrderLayout*
       lanes.first_of[pair] = order.first_pair;
       lanes.factor_of[pair] = static_cast<std::size_t>(order.factors[t]);
       lanes.any_direction = lanes.any_direction || order.factors[t] == RippleFactor::direction;
-      lanes.widest_offset[pair] = static_cast<Real>(widest_frame_offset);
+      lanes.widest_offset[pair] = static_cast<Real>(widest_lane_offset);
     }
   }
 }

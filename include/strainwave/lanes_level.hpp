@@ -194,6 +194,20 @@ STRAINWAVE_INLINE Lanes<Real> larger(Lanes<Real> a, Lanes<Real> b) {
 #endif
 }
 
+/// The smaller of two numbers; the second where either is not a number.
+template <class Real>
+STRAINWAVE_INLINE Lanes<Real> smaller(Lanes<Real> a, Lanes<Real> b) {
+#if STRAINWAVE_LANE_LEVEL == 4
+  if constexpr (sizeof(Real) == 4) {
+    return _mm512_maskz_min_ps(LaneMask<Real>::every, a.v, b.v);
+  } else {
+    return _mm512_maskz_min_pd(LaneMask<Real>::every, a.v, b.v);
+  }
+#else
+  return a.v < b.v ? a.v : b.v;
+#endif
+}
+
 /// 1 / value to the last digit or two, where that is faster than a division.
 template <class Real>
 STRAINWAVE_INLINE Lanes<Real> reciprocal(Lanes<Real> value) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <limits>
 #include <vector>
 
@@ -357,6 +358,56 @@ TYPED_TEST(BatchRipple, AWarmUpThatIsTooShortIsFoundOut) {
       {.warm_up_memories = 0.3, .tolerance_Nm = 10.0, .state_tolerance_Nm = 10.0});
   EXPECT_EQ(tolerant.repeated_chunks, 0U);
   EXPECT_GT(tolerant.largest_ripple_difference_Nm, 1e-4);
+}
+
+/// Angles of a fraction of a turn to a million turns, either way.
+std::vector<double> angles_rad() {
+  std::vector<double> angles_rad;
+  std::uint64_t state = 20;
+  for (int i = 0; i < 4001; ++i) {
+    state = state * 6364136223846793005U + 1442695040888963407U;
+    const double share = static_cast<double>(state >> 11U) / 9007199254740992.0 - 0.5;
+    angles_rad.push_back(share * std::pow(10.0, i % 8));
+  }
+  return angles_rad;
+}
+
+template <class Real>
+void expect_cycles(VectorLevel level, strainwave::Order order) {
+  const std::vector<double> angles = angles_rad();
+  std::vector<Real> turns(angles.size());
+  std::vector<Real> fraction(angles.size());
+  std::vector<Real> cycles(angles.size());
+  const strainwave::OrderCycles<Real> wanted = {static_cast<double>(order.numerator),
+                                                static_cast<double>(order.denominator),
+                                                1.0 / order.denominator, cycles.data()};
+  const auto convert = strainwave::detail::ripple_kernel<Real, 3>(level).convert_angles;
+  convert(angles.data(), angles.size(), turns.data(), fraction.data(), &wanted, 1);
+  using Whole = strainwave::RippleLanes<Real, 3>::Whole;
+  for (std::size_t i = 0; i < angles.size(); ++i) {
+    Whole whole[3];
+    for (std::size_t n = 0; n < 3; ++n) {
+      const Real from[3] = {turns[i], fraction[i], cycles[i]};
+      std::memcpy(&whole[n], &from[n], sizeof(Whole));
+    }
+    const strainwave::Phase phase = strainwave::detail::phase_of_lane(whole[0], whole[1]);
+    EXPECT_NEAR(strainwave::to_radians<double>(phase), angles[i], 1e-8);
+    ASSERT_EQ(static_cast<std::uint32_t>(whole[2]), strainwave::order_fraction(phase, order))
+        << angles[i] << " rad, order " << order.numerator << "/" << order.denominator;
+  }
+}
+
+TEST(BatchRippleAngles, CyclesOfAnOrderAreExact) {
+  for (const VectorLevel level : levels()) {
+    // The last two at the limit of has_short_parts().
+    for (const strainwave::Order order :
+         {strainwave::Order{1, 100}, strainwave::Order{2, 1}, strainwave::Order{7, 3},
+          strainwave::Order{201, 100}, strainwave::Order{1, 524287}, strainwave::Order{809, 648}}) {
+      ASSERT_TRUE(strainwave::detail::has_short_parts(order));
+      expect_cycles<float>(level, order);
+      expect_cycles<double>(level, order);
+    }
+  }
 }
 
 }  // namespace
