@@ -36,21 +36,18 @@ template <class Real, std::size_t MaxPairs>
   return factors;
 }
 
-/// Factors of an order's further pairs, in their order.
+/// Factors of an order's further pairs, in their order.  Each is chosen for its place: put one after
+/// the other where there is room, they would be waited for.
 template <class Real>
 [[nodiscard]] constexpr OrderTerms<Real> terms_of(const RippleOrder& order,
                                                   const RippleFactors<Real>& factors) {
+  const Real last = order.with_direction ? factors.direction : Real(0);
+  const Real after_load = order.with_speed ? factors.speed : last;
+  const Real after_speed = order.with_speed ? last : Real(0);
   OrderTerms<Real> terms;
-  std::size_t count = 0;
-  if (order.with_load) {
-    terms.factors[count++] = factors.load;
-  }
-  if (order.with_speed) {
-    terms.factors[count++] = factors.speed;
-  }
-  if (order.with_direction) {
-    terms.factors[count] = factors.direction;
-  }
+  terms.factors[0] = order.with_load ? factors.load : after_load;
+  terms.factors[1] = order.with_load ? after_load : after_speed;
+  terms.factors[2] = order.with_load ? after_speed : Real(0);
   return terms;
 }
 
