@@ -79,8 +79,8 @@ struct RippleChunk {
   RippleFilterState<Real, MaxPairs> ended;
 };
 
-/// Chunks of about equal length.  Where a warm-up would take longer than half of a chunk there is
-/// no boundary: nothing would be won.
+/// Chunks of about equal length.  Where a warm-up and its chunk would be longer than half of the
+/// log there is no boundary: nothing would be won.
 template <class Real, std::size_t MaxPairs>
 [[nodiscard]] inline std::vector<RippleChunk<Real, MaxPairs>> ripple_chunks(
     const RippleFilterConfig<Real, MaxPairs>& config, const RippleChannel<Real>& channel,
@@ -89,7 +89,7 @@ template <class Real, std::size_t MaxPairs>
   const std::size_t length = (channel.sample_count + count - 1) / count;
   for (std::size_t start = length; start < channel.sample_count; start += length) {
     const std::size_t warm_up = warm_up_before(config, channel, start, memories);
-    if (warm_up <= length / 2) {
+    if (warm_up + length <= channel.sample_count / 2) {
       chunks.back().count = start - chunks.back().start;
       chunks.emplace_back();
       chunks.back().start = start;
@@ -190,8 +190,9 @@ inline LongReport join_chunks(const RippleFilterConfig<Real, MaxPairs>& config,
   return report;
 }
 
-/// How many chunks a log is cut into, as many as its warm-ups leave room for; 1 where it is
-/// filtered in sequence.
+/// How many chunks a log is cut into; 1 where it is filtered in sequence.  Lanes take their chunks
+/// side by side, so that warm-ups may be longer than chunks as long as both together are short
+/// beside the log.
 template <class Real, std::size_t MaxPairs>
 [[nodiscard]] inline std::size_t chunk_count_for(const RippleFilterConfig<Real, MaxPairs>& config,
                                                  const RippleChannel<Real>& channel,
@@ -204,8 +205,14 @@ template <class Real, std::size_t MaxPairs>
   const std::size_t warm_up =
       std::max(warm_up_before(config, channel, channel.sample_count / 2, options.warm_up_memories),
                warm_up_before(config, channel, channel.sample_count, options.warm_up_memories));
-  const std::size_t most = channel.sample_count / std::max(2 * warm_up, 2 * tile_samples);
-  return std::min(block_width<Real> * blocks_per_thread * threads, most);
+  const std::size_t least = 2 * tile_samples;
+  const std::size_t lanes = block_width<Real> * threads;
+  const std::size_t most = channel.sample_count / std::max(2 * warm_up, least);
+  if (most >= lanes) {
+    return std::min(lanes * blocks_per_thread, most);
+  }
+  const std::size_t length = std::max(channel.sample_count / lanes, least);
+  return length + warm_up <= channel.sample_count / 2 ? channel.sample_count / length : 1;
 }
 
 }  // namespace detail

@@ -36,8 +36,8 @@ template <class Real, std::size_t MaxPairs>
   return factors;
 }
 
-/// Factors of an order's further pairs, in their order.  Each is chosen for its place: put one after
-/// the other where there is room, they would be waited for.
+/// Factors of an order's further pairs, in their order.  Each is chosen for its place: put one
+/// after the other where there is room, they would be waited for.
 template <class Real>
 [[nodiscard]] constexpr OrderTerms<Real> terms_of(const RippleOrder& order,
                                                   const RippleFactors<Real>& factors) {
