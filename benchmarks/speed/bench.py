@@ -68,8 +68,8 @@ class Extent:
     scaling: bool
 
 
-FULL: Final = Extent(Effort(11, 0.25), 1.5, 100_000_000, 20_000_000, 3, 10_000_000, scaling=True)
-QUICK: Final = Extent(Effort(3, 0.2), 0.3, 10_000_000, 2_000_000, 1, 1_000_000, scaling=False)
+FULL: Final = Extent(Effort(11, 0.25), 1.5, 100_000_000, 100_000_000, 3, 10_000_000, scaling=True)
+QUICK: Final = Extent(Effort(3, 0.2), 0.3, 10_000_000, 20_000_000, 1, 1_000_000, scaling=False)
 
 
 def run_bench(programs: Programs, extent: Extent, say: Callable[[str], None]) -> dict[str, Any]:
