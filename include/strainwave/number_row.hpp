@@ -57,6 +57,25 @@ struct OneRegister {
     return {indices() < static_cast<Index>(first) ? one.values : other.values};
   }
 
+  /// Adds every fourth lane to one of four sums, one after the other.
+  template <class Four>
+  [[nodiscard]] Four added_by_fours(const Four& sums) const {
+    static_assert(Count >= 4);
+    if constexpr (Count == 16) {
+      const OneRegister<Real, 8> low = {
+          __builtin_shufflevector(values, values, 0, 1, 2, 3, 4, 5, 6, 7)};
+      const OneRegister<Real, 8> high = {
+          __builtin_shufflevector(values, values, 8, 9, 10, 11, 12, 13, 14, 15)};
+      return high.added_by_fours(low.added_by_fours(sums));
+    } else if constexpr (Count == 8) {
+      const Four low = {__builtin_shufflevector(values, values, 0, 1, 2, 3)};
+      const Four high = {__builtin_shufflevector(values, values, 4, 5, 6, 7)};
+      return (sums + low) + high;
+    } else {
+      return sums + *this;
+    }
+  }
+
   /// Halves added until one number is left.
   [[nodiscard]] Real sum() const {
     if constexpr (Count == 8) {
@@ -91,6 +110,16 @@ template <class Real, std::size_t Count>
 using NumberRow =
     std::conditional_t<Count <= row_lane_count && Count * sizeof(Real) <= register_bytes,
                        OneRegister<Real, Count>, SeveralRegisters<Real, Count>>;
+
+#if defined(__AVX512F__)
+/// As NumberRow, and sixteen numbers in one register.
+template <class Real, std::size_t Count>
+using WideRow = std::conditional_t<Count == 16 && sizeof(Real) == 4, OneRegister<Real, Count>,
+                                   NumberRow<Real, Count>>;
+#else
+template <class Real, std::size_t Count>
+using WideRow = NumberRow<Real, Count>;
+#endif
 
 /// Numbers of several registers: two halves, or the first row_lane_count lanes and the others.
 template <class Real, std::size_t Count>
@@ -129,6 +158,16 @@ struct SeveralRegisters {
             High::joined(first - static_cast<std::ptrdiff_t>(low_count), one.high, other.high)};
   }
 
+  /// Adds every fourth lane to one of four sums, one after the other.
+  template <class Four>
+  [[nodiscard]] Four added_by_fours(const Four& sums) const {
+    if constexpr (Count == 4) {
+      return sums + *this;
+    } else {
+      return high.added_by_fours(low.added_by_fours(sums));
+    }
+  }
+
   /// NumberRow that are row_lane_count apart first, one after the other; then halves.
   [[nodiscard]] Real sum() const {
     if constexpr (Count > row_lane_count) {
@@ -148,6 +187,15 @@ struct SeveralRegisters {
     }
   }
 };
+
+/// Sum of products in the order in which four sums side by side have it; see product_sum().
+template <class Row, class Real>
+[[nodiscard]] Real product_sum_by_fours(const Real* a, const Real* b) {
+  using Four = NumberRow<Real, 4>;
+  Real sums[4];  // NOLINT(*-member-init): filled in the next line
+  (Row::load(a) * Row::load(b)).added_by_fours(Four::all(Real(0))).store(sums);
+  return (sums[0] + sums[1]) + (sums[2] + sums[3]);
+}
 
 #else
 

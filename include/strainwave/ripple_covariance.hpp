@@ -145,7 +145,7 @@ constexpr void add_to_element(RippleCovariance<Real, MaxPairs>& p, std::size_t r
 }
 
 template <class Real, std::size_t MaxPairs>
-using RowOf = NumberRow<Real, RippleCovariance<Real, MaxPairs>::row_length>;
+using RowOf = WideRow<Real, RippleCovariance<Real, MaxPairs>::row_length>;
 
 /// Uncorrelated coefficients of one variance.
 template <class Real, std::size_t MaxPairs>
@@ -281,6 +281,14 @@ struct SeenCovariance {
   Real shared_Nm2;                  ///< T with the ripple
 };
 
+/// Where whole rows are read, what the filter does not have of them is no garbage.
+template <class Real, std::size_t MaxPairs, class Count>
+constexpr void clear_rest(SeenCovariance<Real, MaxPairs>& seen, Count count) {
+  for (std::size_t i = count; whole_rows && i < seen.row_length; ++i) {
+    seen.h[i] = Real(0);
+  }
+}
+
 /// Moves the frame after factors that have gone too far from it: of one order a sample, so that no
 /// sample costs much more than another.
 template <class Real, std::size_t MaxPairs, class Count>
@@ -362,9 +370,16 @@ template <class Real, class Count>
 template <class Real, std::size_t MaxPairs, class Count>
 constexpr void see(const RippleCovariance<Real, MaxPairs>& p, Count count,
                    SeenCovariance<Real, MaxPairs>& seen) {
+  clear_rest(seen, count);
   project(p, count, seen.h, seen.ripple_row_Nm2);
-  seen.ripple_variance_Nm2 = product_sum(count, seen.h, seen.ripple_row_Nm2);
-  seen.shared_Nm2 = product_sum(count, seen.h, p.torque_row_Nm2);
+  if constexpr (whole_rows && SeenCovariance<Real, MaxPairs>::row_length >= 4) {
+    using Row = RowOf<Real, MaxPairs>;
+    seen.ripple_variance_Nm2 = product_sum_by_fours<Row>(seen.h, seen.ripple_row_Nm2);
+    seen.shared_Nm2 = product_sum_by_fours<Row>(seen.h, p.torque_row_Nm2);
+  } else {
+    seen.ripple_variance_Nm2 = product_sum(count, seen.h, seen.ripple_row_Nm2);
+    seen.shared_Nm2 = product_sum(count, seen.h, p.torque_row_Nm2);
+  }
 }
 
 /// T's row after a measurement of noise R and variance s; puts P h with T into `row`.  With r = s

@@ -7,6 +7,7 @@
 #include <cstdint>
 
 #include "strainwave/oscillator_covariance.hpp"
+#include "strainwave/ripple_covariance.hpp"
 
 #if defined(STRAINWAVE_NUMBER_ROWS)
 
@@ -75,7 +76,21 @@ void expect_sum_of_a_processor_without_lanes() {
 }
 
 template <class Real, std::size_t Count>
+void expect_product_sum_of_a_processor_without_lanes() {
+  using Of = strainwave::detail::WideRow<Real, Count>;
+  for (std::uint32_t seed = 1; seed < 200; ++seed) {
+    const Row<Real, Count> a(seed);
+    const Row<Real, Count> b(seed + 1000);
+    ASSERT_EQ(strainwave::detail::product_sum_by_fours<Of>(a.values, b.values),
+              strainwave::detail::product_sum(Count, a.values, b.values));
+  }
+}
+
+template <class Real, std::size_t Count>
 void expect_all() {
+  if constexpr (Count >= 4) {
+    expect_product_sum_of_a_processor_without_lanes<Real, Count>();
+  }
   expect_lanes_are_numbers_side_by_side<Real, Count>();
   expect_join_at_every_lane<Real, Count>();
   expect_sum_of_a_processor_without_lanes<Real, Count>();
