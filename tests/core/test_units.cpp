@@ -49,7 +49,7 @@ TEST(Units, OrderFractionAgainst128Bits) {
     const auto bits = static_cast<std::uint32_t>(b >> 58U) % 31U;
     const Rational order{1U + static_cast<std::uint32_t>(a >> 33U) % (1U << bits),
                          1U + static_cast<std::uint32_t>(b & 0x7FFFFFFEU) % (1U << (30U - bits))};
-    const Phase phase{static_cast<std::int64_t>(random.next()) >> (i % 40),
+    const Phase phase{static_cast<std::int64_t>(random.next()) >> (i % 64),
                       static_cast<std::uint32_t>(random.next())};
     ASSERT_EQ(order_fraction(phase, order), fraction_in_128_bits(phase, order))
         << phase.turns << " " << phase.fraction << " " << order.numerator << "/"
