@@ -45,6 +45,17 @@ struct OneRegister {
     __builtin_memcpy(&to.values, from, sizeof(Vector));
     return to;
   }
+  /// Of numbers just computed one by one: a load of several of them at once would wait until the
+  /// last one has left the processor's store queue.
+  [[nodiscard]] static OneRegister gathered(const Real* from) {
+    if constexpr (Count == 8) {
+      return {Vector{from[0], from[1], from[2], from[3], from[4], from[5], from[6], from[7]}};
+    } else if constexpr (Count == 4) {
+      return {Vector{from[0], from[1], from[2], from[3]}};
+    } else {
+      return {Vector{from[0], from[1]}};
+    }
+  }
   void store(Real* to) const { __builtin_memcpy(to, &values, sizeof(Vector)); }
 
   OneRegister operator+(const OneRegister& other) const { return {values + other.values}; }
@@ -136,6 +147,9 @@ struct SeveralRegisters {
   }
   [[nodiscard]] static SeveralRegisters load(const Real* from) {
     return {Low::load(from), High::load(from + low_count)};
+  }
+  [[nodiscard]] static SeveralRegisters gathered(const Real* from) {
+    return {Low::gathered(from), High::gathered(from + low_count)};
   }
   void store(Real* to) const {
     low.store(to);

@@ -80,7 +80,7 @@ template <class Real, std::size_t Length>
     covariance_with_output = covariance_with_output + Row::load(p[j]) * Row::all(output[j]);
   }
   const Row noise = Row::joined(1, Row::all(measurement_noise_variance_Nm2), Row::all(Real(0)));
-  return (noise + covariance_with_output * Row::load(output)).sum();
+  return (noise + covariance_with_output * Row::gathered(output)).sum();
 }
 
 /// Eq. (12) to (14): states and covariance after the measurement, plus the process noise.
