@@ -106,6 +106,14 @@ constexpr void rotate(std::size_t order_count, OscillatorFilterState<Real, MaxOr
   mirror(count, p);
 }
 
+/// The largest variance that an order's states may have; see variance_limit_ratio.
+template <class Real, std::size_t MaxOrders>
+[[nodiscard]] constexpr Real variance_limit(const OscillatorFilterConfig<Real, MaxOrders>& config,
+                                            std::size_t order) {
+  return config.initial_variance_Nm2 +
+         config.variance_limit_ratio * config.process_noise_variance_Nm2[order];
+}
+
 /// Scales an order's rows and columns of P so that its variances end at the limit; a congruence,
 /// which leaves P positive definite.
 template <class Real, std::size_t MaxOrders>
@@ -115,8 +123,7 @@ inline bool limit_variance(const OscillatorFilterConfig<Real, MaxOrders>& config
   auto& p = state.covariance_Nm2;
   const std::size_t state_count = 2 * active_orders(config);
   for (std::size_t a = 0; a < active_orders(config); ++a) {
-    const Real limit = config.initial_variance_Nm2 +
-                       config.variance_limit_ratio * config.process_noise_variance_Nm2[a];
+    const Real limit = variance_limit(config, a);
     const Real first = p[2 * a][2 * a];
     const Real second = p[2 * a + 1][2 * a + 1];
     const Real larger = first > second ? first : second;

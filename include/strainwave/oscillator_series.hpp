@@ -1,0 +1,335 @@
+// SPDX-License-Identifier: Apache-2.0
+/// @file oscillator_series.hpp
+/// The published filter over many samples of one channel: step() after step(), to rounding, in
+/// half the time.
+///
+/// From one step() to the next a processor waits: for P, for what C sees of it, for the quotient,
+/// for P again.  With all samples at hand, what the last measurement takes off P can be kept
+/// beside it.  With g = P C' of the last sample, s its C P C' + R, and P = B - g g' / s,
+///
+///     P C' = B C' - g (g' C') / s        C P C' = C B C' - (g' C')^2 / s
+///
+/// ask for B, g and s alone.  B follows while the next sample is under way, and output rows are
+/// computed a block of samples ahead.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+
+#include "strainwave/number_row.hpp"
+#include "strainwave/oscillator_filter.hpp"
+
+namespace strainwave {
+
+/// Samples of one channel: arrays of `sample_count` numbers, of which those that are written
+/// overlap with no other.
+template <class Real>
+struct OscillatorSeries {
+  std::size_t sample_count = 0;
+  const Real* measured_torque_Nm = nullptr;
+  const Real* motor_speed_rad_s = nullptr;
+  const Real* expected_torque_Nm = nullptr;  ///< null: 0
+  Real* torque_Nm = nullptr;                 ///< null where not wanted; the next two likewise
+  Real* ripple_Nm = nullptr;
+  Status* status = nullptr;
+};
+
+namespace detail {
+
+template <class Real>
+[[nodiscard]] constexpr Real expected_torque_Nm(const OscillatorSeries<Real>& series,
+                                                std::size_t k) {
+  return series.expected_torque_Nm == nullptr ? Real(0) : series.expected_torque_Nm[k];
+}
+
+template <class Real>
+constexpr void write_reading(const OscillatorSeries<Real>& series, std::size_t k,
+                             const OscillatorReading<Real>& reading) {
+  if (series.torque_Nm != nullptr) {
+    series.torque_Nm[k] = reading.torque_Nm;
+  }
+  if (series.ripple_Nm != nullptr) {
+    series.ripple_Nm[k] = reading.ripple_Nm;
+  }
+  if (series.status != nullptr) {
+    series.status[k] = reading.status;
+  }
+}
+
+/// Samples from `first` to before `end` through step().
+template <class Real, std::size_t MaxOrders>
+inline void step_through(const OscillatorFilterConfig<Real, MaxOrders>& config,
+                         OscillatorFilterState<Real, MaxOrders>& state,
+                         const OscillatorSeries<Real>& series, std::size_t first, std::size_t end) {
+  for (std::size_t k = first; k < end; ++k) {
+    OscillatorSample<Real> sample;
+    sample.measured_torque_Nm = series.measured_torque_Nm[k];
+    sample.motor_speed_rad_s = series.motor_speed_rad_s[k];
+    sample.expected_torque_Nm = expected_torque_Nm(series, k);
+    write_reading(series, k, step(config, state, sample));
+  }
+}
+
+#if defined(STRAINWAVE_NUMBER_ROWS)
+
+/// Samples that are looked at ahead of the filter, and that step() takes over together.
+inline constexpr std::size_t series_block = 32;
+
+/// A block that was looked at.
+template <class Real, std::size_t MaxOrders>
+struct SeriesBlock {
+  bool is_usual = false;  ///< every sample is learned from, and none has a flag
+  Real output[series_block][column_length(2 * MaxOrders)] = {};
+};
+
+/// What step() does with a sample before it learns; false where it has more to do than to learn.
+template <class Real, std::size_t MaxOrders>
+[[nodiscard, gnu::always_inline]] inline bool look_at_sample(
+    const OscillatorFilterConfig<Real, MaxOrders>& config,
+    OscillatorFilterState<Real, MaxOrders>& ahead, const OscillatorSeries<Real>& series,
+    std::size_t k, Real* output) {
+  Real numbers[column_length(2 * MaxOrders)] = {};
+  output_now(config, ahead, ahead.last_phase, numbers);
+  NumberRow<Real, column_length(2 * MaxOrders)>::gathered(numbers).store(output);
+  const bool moves = is_moving(config, ahead, ahead.last_phase);
+  const Real motor_turns = turns_of(config, series.motor_speed_rad_s[k]);
+  const bool is_below_nyquist = absolute(highest_order(config) * motor_turns) <= Real(0.5);
+  ahead.last_speed_rad_s = series.motor_speed_rad_s[k];
+  turn_on(config, ahead, is_below_nyquist ? motor_turns : Real(0), true);
+  smooth_speed(config, ahead, ahead.last_speed_rad_s);
+  begin_travel(config, ahead, ahead.last_phase);
+  add_travel(config, ahead, Real(1));
+  return moves && is_below_nyquist &&
+         are_sound(series.measured_torque_Nm[k], expected_torque_Nm(series, k));
+}
+
+/// Whether no variance can reach its limit within a block: it gains process noise and no more.
+template <class Real, std::size_t MaxOrders>
+[[nodiscard]] inline bool has_room(const OscillatorFilterConfig<Real, MaxOrders>& config,
+                                   const OscillatorFilterState<Real, MaxOrders>& state) {
+  for (std::size_t i = 0; i < 2 * active_orders(config); ++i) {
+    const Real gained_Nm2 = Real(series_block) * config.process_noise_variance_Nm2[i / 2];
+    if (config.variance_limit_ratio > Real(0) &&
+        !(state.covariance_Nm2[i][i] + gained_Nm2 <= variance_limit(config, i / 2))) {
+      return false;
+    }
+  }
+  return true;
+}
+
+/// States and P with the last measurement beside them, in registers.
+template <class Real, std::size_t MaxOrders>
+class DeferredUpdate {
+ public:
+  static constexpr std::size_t length = column_length(2 * MaxOrders);
+  using Config = OscillatorFilterConfig<Real, MaxOrders>;
+  using State = OscillatorFilterState<Real, MaxOrders>;
+
+  [[gnu::always_inline]] DeferredUpdate(std::size_t count, const State& state)
+      : states_(Row::load(state.states_Nm)) {
+#pragma GCC unroll 8
+    for (std::size_t j = 0; j < count; ++j) {
+      column_[j] = Row::load(state.covariance_Nm2[j]);
+    }
+  }
+
+  /// C x of the next sample.
+  [[nodiscard, gnu::always_inline]] Real ripple_Nm(const Real* output) {
+    const Row row = Row::load(output);
+    shared_ = (seen_ * row).sum();
+    return (states_ * row).sum() + shared_ * step_Nm_;
+  }
+
+  /// Eq. (12) to (14) after ripple_Nm() of the same sample; false where P has lost its sign.
+  /// `last_seen` has P C' of the sample before, where single elements are quick to load; that of
+  /// this sample goes to `seen`.
+  [[nodiscard, gnu::always_inline]] bool learn(const Config& config, std::size_t count,
+                                               const Real* output, Real innovation_Nm,
+                                               const Real* last_seen, Real* seen) {
+    const Row covariance_with_output = product(count, output);
+    const Real share = shared_ * per_variance_;
+    const Real noise_Nm2 = config.measurement_noise_variance_Nm2;
+    const Real variance_Nm2 =
+        (covariance_with_output * Row::load(output)).sum() + (noise_Nm2 - shared_ * share);
+    settle(count, last_seen);
+#pragma GCC unroll 8
+    for (std::size_t j = 0; j < count; ++j) {
+      column_[j] = column_[j] + noise_row(config, j);
+    }
+    seen_ = covariance_with_output - seen_ * Row::all(share);
+    seen_.store(seen);
+    per_variance_ = Real(1) / variance_Nm2;
+    gain_ = seen_ * Row::all(per_variance_);
+    step_Nm_ = per_variance_ * innovation_Nm;
+    return is_between(noise_Nm2, variance_Nm2, std::numeric_limits<Real>::max());
+  }
+
+  /// The way back, with nothing left beside P.  Elements above the diagonal are no longer those
+  /// below it to the last bit, and become so again.
+  [[gnu::always_inline]] void store(std::size_t count, const Real* last_seen, State& state) {
+    settle(count, last_seen);
+    states_.store(state.states_Nm);
+#pragma GCC unroll 8
+    for (std::size_t j = 0; j < count; ++j) {
+      column_[j].store(state.covariance_Nm2[j]);
+    }
+    mirror(count, state.covariance_Nm2);
+  }
+
+ private:
+  using Row = NumberRow<Real, length>;
+
+  /// B C', in two chains.
+  [[nodiscard, gnu::always_inline]] Row product(std::size_t count, const Real* output) const {
+    Row even = column_[0] * Row::all(output[0]);
+    Row odd = column_[1] * Row::all(output[1]);
+#pragma GCC unroll 8
+    for (std::size_t j = 2; j < count; j += 2) {
+      even = even + column_[j] * Row::all(output[j]);
+      odd = odd + column_[j + 1] * Row::all(output[j + 1]);
+    }
+    return even + odd;
+  }
+
+  [[gnu::always_inline]] void settle(std::size_t count, const Real* last_seen) {
+    states_ = states_ + seen_ * Row::all(step_Nm_);
+#pragma GCC unroll 8
+    for (std::size_t j = 0; j < count; ++j) {
+      column_[j] = column_[j] - gain_ * Row::all(last_seen[j]);
+    }
+  }
+
+  /// Process noise of a state, in its own element of its column.
+  [[nodiscard, gnu::always_inline]] static Row noise_row(const Config& config, std::size_t j) {
+    const auto above = static_cast<std::ptrdiff_t>(j);
+    const Row zero = Row::all(Real(0));
+    const Row noise = Row::all(config.process_noise_variance_Nm2[j / 2]);
+    return Row::joined(above, zero, Row::joined(above + 1, noise, zero));
+  }
+
+  Row column_[2 * MaxOrders];  ///< B
+  Row states_;
+  Row seen_ = Row::all(Real(0));  ///< P C' of the last sample
+  Row gain_ = Row::all(Real(0));  ///< the same by its C P C' + R
+  Real per_variance_ = Real(0);
+  Real step_Nm_ = Real(0);  ///< innovation by C P C' + R
+  Real shared_ = Real(0);   ///< `seen_` through the next sample's output row
+};
+
+/// A series on its way through the filter.
+template <class Real, std::size_t MaxOrders>
+class SeriesFilter {
+ public:
+  using Config = OscillatorFilterConfig<Real, MaxOrders>;
+  using State = OscillatorFilterState<Real, MaxOrders>;
+  using Series = OscillatorSeries<Real>;
+
+  /// All whole blocks; returns how many samples they have.
+  [[gnu::always_inline]] std::size_t filter(const Config& config, State& state,
+                                            const Series& series) {
+    std::size_t first = 0;
+    bool is_looked_at = false;
+    for (; first + series_block <= series.sample_count; first += series_block) {
+      if (!is_looked_at) {
+        ahead_ = state;
+        look_at(config, series, first);
+      }
+      is_looked_at = blocks_[now_].is_usual && has_room(config, state) &&
+                     filter_block(config, state, series, first);
+      if (!is_looked_at) {
+        step_through(config, state, series, first, first + series_block);
+      }
+    }
+    return first;
+  }
+
+ private:
+  void look_at(const Config& config, const Series& series, std::size_t first) {
+    SeriesBlock<Real, MaxOrders>& block = blocks_[now_];
+    block.is_usual = true;
+    for (std::size_t k = 0; k < series_block; ++k) {
+      const bool is_usual = look_at_sample(config, ahead_, series, first + k, block.output[k]);
+      block.is_usual = block.is_usual && is_usual;
+    }
+  }
+
+  /// Filters a usual block and looks at the next one; at this one again where it is the last.
+  /// False, and the state is as it was, where P loses its sign.
+  [[nodiscard, gnu::always_inline]] bool filter_block(const Config& config, State& state,
+                                                      const Series& series, std::size_t first) {
+    const std::size_t count = 2 * active_orders(config);
+    const SeriesBlock<Real, MaxOrders>& block = blocks_[now_];
+    now_ = 1 - now_;
+    SeriesBlock<Real, MaxOrders>& next = blocks_[now_];
+    const bool is_last = series.sample_count - first < 2 * series_block;
+    const std::size_t next_first = is_last ? first : first + series_block;
+    const State after = ahead_;
+    DeferredUpdate<Real, MaxOrders> update(count, state);
+    bool is_usual = true;
+    bool is_sound = true;
+    for (std::size_t k = 0; k < series_block; ++k) {
+      const Real* const output = block.output[k];
+      ripple_Nm_[k] = update.ripple_Nm(output);
+      is_usual = look_at_sample(config, ahead_, series, next_first + k, next.output[k]) & is_usual;
+      const Real torque_Nm = series.measured_torque_Nm[first + k] - ripple_Nm_[k];
+      is_sound =
+          update.learn(config, count, output, torque_Nm - expected_torque_Nm(series, first + k),
+                       seen_[k], seen_[k + 1]) &
+          is_sound;
+    }
+    next.is_usual = is_usual;
+    if (!is_sound) {
+      return false;
+    }
+    update.store(count, seen_[series_block], state);
+    take_motion(after, state);
+    write(series, first, state);
+    return true;
+  }
+
+  static void take_motion(const State& from, State& to) {
+    for (std::size_t a = 0; a < MaxOrders; ++a) {
+      to.angle[a] = from.angle[a];
+    }
+    to.travel_rad = from.travel_rad;
+    to.last_speed_rad_s = from.last_speed_rad_s;
+    to.smoothed_speed_rad_s = from.smoothed_speed_rad_s;
+  }
+
+  /// Readings and counters of a usual block.
+  void write(const Series& series, std::size_t first, State& state) const {
+    for (std::size_t k = 0; k < series_block; ++k) {
+      state.last_torque_Nm = series.measured_torque_Nm[first + k] - ripple_Nm_[k];
+      write_reading(series, first + k,
+                    {.torque_Nm = state.last_torque_Nm, .ripple_Nm = ripple_Nm_[k], .status = 0});
+      record(state.counters, 0);
+    }
+  }
+
+  State ahead_;  ///< angles, travel and speeds after all samples that were looked at
+  SeriesBlock<Real, MaxOrders> blocks_[2];
+  std::size_t now_ = 0;
+  Real seen_[series_block + 1][column_length(2 * MaxOrders)] = {};
+  Real ripple_Nm_[series_block] = {};
+};
+
+#endif
+
+}  // namespace detail
+
+/// step() for each sample of a series, with RotationSource::speed.  Torque and ripple are those of
+/// step() to rounding, statuses and counters the same.
+template <class Real, std::size_t MaxOrders>
+inline void steps(const OscillatorFilterConfig<Real, MaxOrders>& config,
+                  OscillatorFilterState<Real, MaxOrders>& state,
+                  const OscillatorSeries<Real>& series) {
+  std::size_t first = 0;
+#if defined(STRAINWAVE_NUMBER_ROWS)
+  detail::SeriesFilter<Real, MaxOrders> filter;
+  first = filter.filter(config, state, series);
+#endif
+  detail::step_through(config, state, series, first, series.sample_count);
+}
+
+}  // namespace strainwave
