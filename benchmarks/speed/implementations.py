@@ -62,16 +62,18 @@ def _peers(which: str, *names: tuple[str, str, str]) -> tuple[Implementation, ..
     )
 
 
-def _core(which: str) -> tuple[Implementation, ...]:
-    own = "strainwave, step by step"
+_BY_STEP: Final = "strainwave, step by step"
+
+
+def _core(which: str, case: str, own: str) -> tuple[Implementation, ...]:
     return (
-        Implementation("core", which, "native", f"{which}_float", "float", own),
-        Implementation("core_double", which, "native", f"{which}_double", "double", own),
+        Implementation("core", which, "native", f"{case}_float", "float", own),
+        Implementation("core_double", which, "native", f"{case}_double", "double", own),
         Implementation(
             "core_run_time",
             which,
             "native",
-            f"{which}_float_run_time",
+            f"{case}_float_run_time",
             "float",
             f"{own}, configuration read at run time",
         ),
@@ -92,7 +94,8 @@ _NUMBA: Final = (
 )
 #: The first one is what the others are compared with.
 PUBLISHED: Final = (
-    *_core("published"),
+    *_core("published", "published_series", "strainwave, all samples in one call"),
+    Implementation("core_by_step", "published", "native", "published_float", "float", _BY_STEP),
     *_eigen("published"),
     Implementation(
         "minikalman", "published", "rust", "published_minikalman", "float", "minikalman"
@@ -108,7 +111,11 @@ PUBLISHED: Final = (
         ("pykalman", "double", "pykalman"),
     ),
 )
-DEFAULT: Final = (*_core("default"), *_eigen("default"), *_peers("default", *_NUMBA))
+DEFAULT: Final = (
+    *_core("default", "default", _BY_STEP),
+    *_eigen("default"),
+    *_peers("default", *_NUMBA),
+)
 
 BATCH_CHANNELS: Final = 64
 

@@ -3,21 +3,15 @@
 /// The published filter over many samples of one channel: step() after step(), to rounding, in
 /// half the time.
 ///
-/// From one step() to the next a processor waits: for P, for what C sees of it, for the quotient,
-/// for P again.  With all samples at hand, what the last measurement takes off P can be kept
-/// beside it.  With g = P C' of the last sample, s its C P C' + R, and P = B - g g' / s,
-///
-///     P C' = B C' - g (g' C') / s        C P C' = C B C' - (g' C')^2 / s
-///
-/// ask for B, g and s alone.  B follows while the next sample is under way, and output rows are
-/// computed a block of samples ahead.
+/// With all samples at hand nothing has to wait for the end of a step: each update is deferred
+/// (oscillator_deferred.hpp), and output rows are computed a block of samples ahead.  A block in
+/// which a sample is not simply learned from goes through step().
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
-#include <limits>
 
 #include "strainwave/number_row.hpp"
+#include "strainwave/oscillator_deferred.hpp"
 #include "strainwave/oscillator_filter.hpp"
 
 namespace strainwave {
@@ -76,11 +70,14 @@ inline void step_through(const OscillatorFilterConfig<Real, MaxOrders>& config,
 /// Samples that are looked at ahead of the filter, and that step() takes over together.
 inline constexpr std::size_t series_block = 32;
 
+/// Rows that begin here lie in one line of the cache each.
+inline constexpr std::size_t row_alignment = 64;
+
 /// A block that was looked at.
 template <class Real, std::size_t MaxOrders>
 struct SeriesBlock {
+  alignas(row_alignment) Real output[series_block][column_length(2 * MaxOrders)] = {};
   bool is_usual = false;  ///< every sample is learned from, and none has a flag
-  Real output[series_block][column_length(2 * MaxOrders)] = {};
 };
 
 /// What step() does with a sample before it learns; false where it has more to do than to learn.
@@ -117,105 +114,6 @@ template <class Real, std::size_t MaxOrders>
   }
   return true;
 }
-
-/// States and P with the last measurement beside them, in registers.
-template <class Real, std::size_t MaxOrders>
-class DeferredUpdate {
- public:
-  static constexpr std::size_t length = column_length(2 * MaxOrders);
-  using Config = OscillatorFilterConfig<Real, MaxOrders>;
-  using State = OscillatorFilterState<Real, MaxOrders>;
-
-  [[gnu::always_inline]] DeferredUpdate(std::size_t count, const State& state)
-      : states_(Row::load(state.states_Nm)) {
-#pragma GCC unroll 8
-    for (std::size_t j = 0; j < count; ++j) {
-      column_[j] = Row::load(state.covariance_Nm2[j]);
-    }
-  }
-
-  /// C x of the next sample.
-  [[nodiscard, gnu::always_inline]] Real ripple_Nm(const Real* output) {
-    const Row row = Row::load(output);
-    shared_ = (seen_ * row).sum();
-    return (states_ * row).sum() + shared_ * step_Nm_;
-  }
-
-  /// Eq. (12) to (14) after ripple_Nm() of the same sample; false where P has lost its sign.
-  /// `last_seen` has P C' of the sample before, where single elements are quick to load; that of
-  /// this sample goes to `seen`.
-  [[nodiscard, gnu::always_inline]] bool learn(const Config& config, std::size_t count,
-                                               const Real* output, Real innovation_Nm,
-                                               const Real* last_seen, Real* seen) {
-    const Row covariance_with_output = product(count, output);
-    const Real share = shared_ * per_variance_;
-    const Real noise_Nm2 = config.measurement_noise_variance_Nm2;
-    const Real variance_Nm2 =
-        (covariance_with_output * Row::load(output)).sum() + (noise_Nm2 - shared_ * share);
-    settle(count, last_seen);
-#pragma GCC unroll 8
-    for (std::size_t j = 0; j < count; ++j) {
-      column_[j] = column_[j] + noise_row(config, j);
-    }
-    seen_ = covariance_with_output - seen_ * Row::all(share);
-    seen_.store(seen);
-    per_variance_ = Real(1) / variance_Nm2;
-    gain_ = seen_ * Row::all(per_variance_);
-    step_Nm_ = per_variance_ * innovation_Nm;
-    return is_between(noise_Nm2, variance_Nm2, std::numeric_limits<Real>::max());
-  }
-
-  /// The way back, with nothing left beside P.  Elements above the diagonal are no longer those
-  /// below it to the last bit, and become so again.
-  [[gnu::always_inline]] void store(std::size_t count, const Real* last_seen, State& state) {
-    settle(count, last_seen);
-    states_.store(state.states_Nm);
-#pragma GCC unroll 8
-    for (std::size_t j = 0; j < count; ++j) {
-      column_[j].store(state.covariance_Nm2[j]);
-    }
-    mirror(count, state.covariance_Nm2);
-  }
-
- private:
-  using Row = NumberRow<Real, length>;
-
-  /// B C', in two chains.
-  [[nodiscard, gnu::always_inline]] Row product(std::size_t count, const Real* output) const {
-    Row even = column_[0] * Row::all(output[0]);
-    Row odd = column_[1] * Row::all(output[1]);
-#pragma GCC unroll 8
-    for (std::size_t j = 2; j < count; j += 2) {
-      even = even + column_[j] * Row::all(output[j]);
-      odd = odd + column_[j + 1] * Row::all(output[j + 1]);
-    }
-    return even + odd;
-  }
-
-  [[gnu::always_inline]] void settle(std::size_t count, const Real* last_seen) {
-    states_ = states_ + seen_ * Row::all(step_Nm_);
-#pragma GCC unroll 8
-    for (std::size_t j = 0; j < count; ++j) {
-      column_[j] = column_[j] - gain_ * Row::all(last_seen[j]);
-    }
-  }
-
-  /// Process noise of a state, in its own element of its column.
-  [[nodiscard, gnu::always_inline]] static Row noise_row(const Config& config, std::size_t j) {
-    const auto above = static_cast<std::ptrdiff_t>(j);
-    const Row zero = Row::all(Real(0));
-    const Row noise = Row::all(config.process_noise_variance_Nm2[j / 2]);
-    return Row::joined(above, zero, Row::joined(above + 1, noise, zero));
-  }
-
-  Row column_[2 * MaxOrders];  ///< B
-  Row states_;
-  Row seen_ = Row::all(Real(0));  ///< P C' of the last sample
-  Row gain_ = Row::all(Real(0));  ///< the same by its C P C' + R
-  Real per_variance_ = Real(0);
-  Real step_Nm_ = Real(0);  ///< innovation by C P C' + R
-  Real shared_ = Real(0);   ///< `seen_` through the next sample's output row
-};
 
 /// A series on its way through the filter.
 template <class Real, std::size_t MaxOrders>
@@ -310,7 +208,7 @@ class SeriesFilter {
   State ahead_;  ///< angles, travel and speeds after all samples that were looked at
   SeriesBlock<Real, MaxOrders> blocks_[2];
   std::size_t now_ = 0;
-  Real seen_[series_block + 1][column_length(2 * MaxOrders)] = {};
+  alignas(row_alignment) Real seen_[series_block + 1][column_length(2 * MaxOrders)] = {};
   Real ripple_Nm_[series_block] = {};
 };
 

@@ -145,8 +145,8 @@ TYPED_TEST(OscillatorSeriesOf, CapacityInUseAndToSpare) {
   expect_as_by_step(six_states, strainwave::initial_state(six_states), log, 2000);
   const auto four_of_six = strainwave::taghirad1999_4<Real, 3>();
   expect_as_by_step(four_of_six, strainwave::initial_state(four_of_six), log, 2000);
-  const auto two_states = tuned<Real, 1>(1);
-  expect_as_by_step(two_states, strainwave::initial_state(two_states), log, 2000);
+  const auto two_of_four = tuned<Real, 2>(1);
+  expect_as_by_step(two_of_four, strainwave::initial_state(two_of_four), log, 2000);
 }
 
 TYPED_TEST(OscillatorSeriesOf, VariancesAreLimitedAsByStep) {
@@ -193,6 +193,29 @@ TYPED_TEST(OscillatorSeriesOf, LossOfTheCovariancesSignIsMetAsByStep) {
   }
 }
 
+TYPED_TEST(OscillatorSeriesOf, EveryVarianceThatIsAllowedGivesNumbers) {
+  using Real = TypeParam;
+  for (const Real process : {Real(0), Real(1e-20), Real(1e30)}) {
+    for (const Real measurement : {Real(1e-20), Real(1), Real(1e30)}) {
+      for (const Real initial : {Real(1e-20), Real(1e30)}) {
+        auto config = strainwave::taghirad1999<Real, 3>({100, 1});
+        config.measurement_noise_variance_Nm2 = measurement;
+        config.initial_variance_Nm2 = initial;
+        for (Real& each : config.process_noise_variance_Nm2) {
+          each = process;
+        }
+        ASSERT_TRUE(check(config).ok());
+        auto state = strainwave::initial_state(config);
+        Log<Real> log = quiet_log<Real>(1, 3000);
+        filter_by_series(config, state, log, 3000);
+        for (const Real ripple_Nm : log.ripple_Nm) {
+          ASSERT_TRUE(std::isfinite(ripple_Nm)) << process << ' ' << measurement << ' ' << initial;
+        }
+      }
+    }
+  }
+}
+
 TYPED_TEST(OscillatorSeriesOf, WhatIsNotWantedIsNotWritten) {
   using Real = TypeParam;
   const auto config = joint<Real>(0);
@@ -230,7 +253,7 @@ TYPED_TEST(OscillatorSeriesOf, HalfAMillionSamplesStayWithStepInDouble) {
     filter_by_step(reference, expected_state, expected);
     if (round >= 90) {
       for (std::size_t k = 0; k < 5000; ++k) {
-        const double ripple_Nm = static_cast<double>(log.ripple_Nm[k]);
+        const auto ripple_Nm = static_cast<double>(log.ripple_Nm[k]);
         worst_Nm = std::fmax(worst_Nm, std::fabs(ripple_Nm - expected.ripple_Nm[k]));
       }
     }
