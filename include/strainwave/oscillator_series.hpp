@@ -9,6 +9,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 
 #include "strainwave/number_row.hpp"
 #include "strainwave/oscillator_deferred.hpp"
@@ -80,25 +81,43 @@ struct SeriesBlock {
   bool is_usual = false;  ///< every sample is learned from, and none has a flag
 };
 
-/// What step() does with a sample before it learns; false where it has more to do than to learn.
+/// Whether torques and speeds of a block raise no flag.
+template <class Real, std::size_t MaxOrders>
+[[nodiscard]] inline bool is_sound_block(const OscillatorFilterConfig<Real, MaxOrders>& config,
+                                         const OscillatorSeries<Real>& series, std::size_t first) {
+  const Real order = highest_order(config);
+  const Real* const torque_Nm = series.measured_torque_Nm + first;
+  const Real* const speed_rad_s = series.motor_speed_rad_s + first;
+  std::uint32_t sound = 1;  // a number, so that samples are compared side by side
+  for (std::size_t k = 0; k < series_block; ++k) {
+    const Real turns = absolute(order * turns_of(config, speed_rad_s[k]));
+    sound &= turns <= Real(0.5) ? 1U : 0U;
+    sound &= is_usable_torque(torque_Nm[k]) ? 1U : 0U;
+  }
+  if (series.expected_torque_Nm != nullptr) {
+    const Real* const expected_Nm = series.expected_torque_Nm + first;
+    for (std::size_t k = 0; k < series_block; ++k) {
+      sound &= are_sound(torque_Nm[k], expected_Nm[k]) ? 1U : 0U;
+    }
+  }
+  return sound != 0;
+}
+
+/// What step() does with a sound sample before it learns; false where it does not learn.
 template <class Real, std::size_t MaxOrders>
 [[nodiscard, gnu::always_inline]] inline bool look_at_sample(
     const OscillatorFilterConfig<Real, MaxOrders>& config,
-    OscillatorFilterState<Real, MaxOrders>& ahead, const OscillatorSeries<Real>& series,
-    std::size_t k, Real* output) {
+    OscillatorFilterState<Real, MaxOrders>& ahead, Real motor_speed_rad_s, Real* output) {
   Real numbers[column_length(2 * MaxOrders)] = {};
   output_now(config, ahead, ahead.last_phase, numbers);
   NumberRow<Real, column_length(2 * MaxOrders)>::gathered(numbers).store(output);
   const bool moves = is_moving(config, ahead, ahead.last_phase);
-  const Real motor_turns = turns_of(config, series.motor_speed_rad_s[k]);
-  const bool is_below_nyquist = absolute(highest_order(config) * motor_turns) <= Real(0.5);
-  ahead.last_speed_rad_s = series.motor_speed_rad_s[k];
-  turn_on(config, ahead, is_below_nyquist ? motor_turns : Real(0), true);
-  smooth_speed(config, ahead, ahead.last_speed_rad_s);
+  ahead.last_speed_rad_s = motor_speed_rad_s;
+  turn_on(config, ahead, turns_of(config, motor_speed_rad_s), true);
+  smooth_speed(config, ahead, motor_speed_rad_s);
   begin_travel(config, ahead, ahead.last_phase);
   add_travel(config, ahead, Real(1));
-  return moves && is_below_nyquist &&
-         are_sound(series.measured_torque_Nm[k], expected_torque_Nm(series, k));
+  return moves;
 }
 
 /// Whether no variance can reach its limit within a block: it gains process noise and no more.
@@ -145,45 +164,46 @@ class SeriesFilter {
  private:
   void look_at(const Config& config, const Series& series, std::size_t first) {
     SeriesBlock<Real, MaxOrders>& block = blocks_[now_];
-    block.is_usual = true;
-    for (std::size_t k = 0; k < series_block; ++k) {
-      const bool is_usual = look_at_sample(config, ahead_, series, first + k, block.output[k]);
-      block.is_usual = block.is_usual && is_usual;
+    block.is_usual = is_sound_block(config, series, first);
+    for (std::size_t k = 0; block.is_usual && k < series_block; ++k) {
+      block.is_usual =
+          look_at_sample(config, ahead_, series.motor_speed_rad_s[first + k], block.output[k]);
     }
   }
 
-  /// Filters a usual block and looks at the next one; at this one again where it is the last.
-  /// False, and the state is as it was, where P loses its sign.
+  /// Filters a usual block and looks at the next one; at this one again where there is none that is
+  /// sound.  False, and the state is as it was, where P loses its sign.
   [[nodiscard, gnu::always_inline]] bool filter_block(const Config& config, State& state,
                                                       const Series& series, std::size_t first) {
     const std::size_t count = 2 * active_orders(config);
     const SeriesBlock<Real, MaxOrders>& block = blocks_[now_];
     now_ = 1 - now_;
     SeriesBlock<Real, MaxOrders>& next = blocks_[now_];
-    const bool is_last = series.sample_count - first < 2 * series_block;
-    const std::size_t next_first = is_last ? first : first + series_block;
+    const bool has_next = series.sample_count - first >= 2 * series_block &&
+                          is_sound_block(config, series, first + series_block);
+    const Real* const next_speed_rad_s =
+        series.motor_speed_rad_s + first + (has_next ? series_block : 0);
     const State after = ahead_;
     DeferredUpdate<Real, MaxOrders> update(count, state);
-    bool is_usual = true;
+    bool is_usual = has_next;
     bool is_sound = true;
     for (std::size_t k = 0; k < series_block; ++k) {
       const Real* const output = block.output[k];
       ripple_Nm_[k] = update.ripple_Nm(output);
-      is_usual = look_at_sample(config, ahead_, series, next_first + k, next.output[k]) & is_usual;
-      const Real torque_Nm = series.measured_torque_Nm[first + k] - ripple_Nm_[k];
-      is_sound =
-          update.learn(config, count, output, torque_Nm - expected_torque_Nm(series, first + k),
-                       seen_[k], seen_[k + 1]) &
-          is_sound;
+      is_usual = look_at_sample(config, ahead_, next_speed_rad_s[k], next.output[k]) && is_usual;
+      const Real innovation_Nm = series.measured_torque_Nm[first + k] - ripple_Nm_[k] -
+                                 expected_torque_Nm(series, first + k);
+      const bool keeps_sign =
+          update.learn(config, count, output, innovation_Nm, seen_[k], seen_[k + 1]);
+      is_sound = is_sound && keeps_sign;
     }
     next.is_usual = is_usual;
-    if (!is_sound) {
-      return false;
+    if (is_sound) {
+      update.store(count, seen_[series_block], state);
+      take_motion(after, state);
+      write(series, first, state);
     }
-    update.store(count, seen_[series_block], state);
-    take_motion(after, state);
-    write(series, first, state);
-    return true;
+    return is_sound;
   }
 
   static void take_motion(const State& from, State& to) {
