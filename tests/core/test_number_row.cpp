@@ -38,6 +38,8 @@ void expect_lanes_are_numbers_side_by_side() {
     Real sums[Count];
     Real differences[Count];
     Real products[Count];
+    Real gathered[Count];
+    Of::gathered(a.values).store(gathered);
     (Of::load(a.values) + Of::load(b.values)).store(sums);
     (Of::load(a.values) - Of::load(b.values)).store(differences);
     (Of::load(a.values) * Of::all(b.values[0])).store(products);
@@ -45,6 +47,7 @@ void expect_lanes_are_numbers_side_by_side() {
       ASSERT_EQ(sums[i], a.values[i] + b.values[i]);
       ASSERT_EQ(differences[i], a.values[i] - b.values[i]);
       ASSERT_EQ(products[i], a.values[i] * b.values[0]);
+      ASSERT_EQ(gathered[i], a.values[i]);
     }
   }
 }
