@@ -153,7 +153,7 @@ class SeriesFilter {
         look_at(config, series, first);
       }
       is_looked_at = blocks_[now_].is_usual && has_room(config, state) &&
-                     filter_block(config, state, series, first);
+                     filter_any_block(config, state, series, first);
       if (!is_looked_at) {
         step_through(config, state, series, first, first + series_block);
       }
@@ -171,11 +171,19 @@ class SeriesFilter {
     }
   }
 
+  /// Loops have constant length where the configuration uses all of its capacity.
+  [[nodiscard, gnu::always_inline]] bool filter_any_block(const Config& config, State& state,
+                                                          const Series& series, std::size_t first) {
+    return active_orders(config) == MaxOrders
+               ? filter_block(config, state, series, first, 2 * MaxOrders)
+               : filter_block(config, state, series, first, 2 * active_orders(config));
+  }
+
   /// Filters a usual block and looks at the next one; at this one again where there is none that is
   /// sound.  False, and the state is as it was, where P loses its sign.
   [[nodiscard, gnu::always_inline]] bool filter_block(const Config& config, State& state,
-                                                      const Series& series, std::size_t first) {
-    const std::size_t count = 2 * active_orders(config);
+                                                      const Series& series, std::size_t first,
+                                                      std::size_t count) {
     const SeriesBlock<Real, MaxOrders>& block = blocks_[now_];
     now_ = 1 - now_;
     SeriesBlock<Real, MaxOrders>& next = blocks_[now_];

@@ -8,6 +8,7 @@
 namespace speed {
 
 void add_core(Cases& cases);
+void add_series(Cases& cases);
 void add_states(Cases& cases);
 void add_published_eigen(Cases& cases);
 void add_default_eigen(Cases& cases);

@@ -7,6 +7,7 @@ namespace speed {
 Cases all_cases() {
   Cases cases;
   add_core(cases);
+  add_series(cases);
   add_states(cases);
   add_sequential(cases);
 #ifdef SPEED_HAS_EIGEN

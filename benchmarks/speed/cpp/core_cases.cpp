@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The core's filters, one channel.
+// The core's filters, one channel, sample by sample.
 #include "cases.hpp"
 #include "filters.hpp"
 
@@ -17,19 +17,10 @@ Case default_constant(const Recording& recording, const Options& /*options*/) {
   return default_case<Real>(recording, []() -> const auto& { return default_15<Real>; });
 }
 
-template <class Real>
-Case published_series_constant(const Recording& recording, const Options& /*options*/) {
-  return published_series_case<Real>(recording, []() -> const auto& { return published<Real>; });
-}
-
 /// The configuration is read, as from a joint file.
 template <class Real>
 Case published_run_time(const Recording& recording, const Options& /*options*/) {
   return published_case<Real>(recording, [config = published<Real>] { return config; });
-}
-template <class Real>
-Case published_series_run_time(const Recording& recording, const Options& /*options*/) {
-  return published_series_case<Real>(recording, [config = published<Real>] { return config; });
 }
 template <class Real>
 Case default_run_time(const Recording& recording, const Options& /*options*/) {
@@ -42,9 +33,6 @@ void add_core(Cases& cases) {
   cases["published_float"] = published_constant<float>;
   cases["published_double"] = published_constant<double>;
   cases["published_float_run_time"] = published_run_time<float>;
-  cases["published_series_float"] = published_series_constant<float>;
-  cases["published_series_double"] = published_series_constant<double>;
-  cases["published_series_float_run_time"] = published_series_run_time<float>;
   cases["default_float"] = default_constant<float>;
   cases["default_double"] = default_constant<double>;
   cases["default_float_run_time"] = default_run_time<float>;

@@ -9,7 +9,6 @@
 #include "case.hpp"
 #include "inputs.hpp"
 #include "strainwave/oscillator_filter.hpp"
-#include "strainwave/oscillator_series.hpp"
 #include "strainwave/ripple_filter.hpp"
 
 namespace speed {
@@ -57,20 +56,7 @@ void filter_published(const Config& config, const Real* torque_Nm, const Real* s
   }
 }
 
-/// The same, all samples in one call.
-template <class Config, class Real>
-void filter_published_series(const Config& config, const Real* torque_Nm, const Real* speed_rad_s,
-                             std::size_t samples, Real* ripple_Nm) {
-  auto state = strainwave::initial_state(config);
-  strainwave::OscillatorSeries<Real> series;
-  series.sample_count = samples;
-  series.measured_torque_Nm = torque_Nm;
-  series.motor_speed_rad_s = speed_rad_s;
-  series.ripple_Nm = ripple_Nm;
-  strainwave::steps(config, state, series);
-}
-
-/// The default filter, sample by sample.
+/// The default filter, likewise.
 template <class Config, class Real>
 void filter_default(const Config& config, const Real* torque_Nm, const strainwave::Phase* phases,
                     std::size_t samples, Real* ripple_Nm) {
@@ -93,17 +79,6 @@ Case published_case(const Recording& recording, const ConfigOf& config_of) {
       [config_of, torque = converted<Real>(recording.torque_Nm),
        speed = converted<Real>(recording.motor_speed_rad_s)](std::size_t samples, Real* ripple_Nm) {
         filter_published(config_of(), torque.data(), speed.data(), samples, ripple_Nm);
-      });
-}
-
-/// The same, all samples in one call.
-template <class Real, class ConfigOf>
-Case published_series_case(const Recording& recording, const ConfigOf& config_of) {
-  return single_channel(
-      std::vector<Real>(recording.samples()),
-      [config_of, torque = converted<Real>(recording.torque_Nm),
-       speed = converted<Real>(recording.motor_speed_rad_s)](std::size_t samples, Real* ripple_Nm) {
-        filter_published_series(config_of(), torque.data(), speed.data(), samples, ripple_Nm);
       });
 }
 
