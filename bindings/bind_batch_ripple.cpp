@@ -14,6 +14,7 @@
 #include "bind_status.hpp"
 #include "strainwave/batch_ripple.hpp"
 #include "strainwave/batch_ripple_long.hpp"
+#include "strainwave/learned_ripple.hpp"
 #include "strainwave/sample_clock.hpp"
 
 namespace strainwave::bindings {
@@ -25,14 +26,14 @@ namespace {
 /// Pairs that a batch has room for: those that run on lanes.
 inline constexpr std::size_t batch_pairs = strainwave::detail::most_lane_pairs;
 
-/// Results of one channel: torque, ripple and status.
+/// Results of one channel: two of the outputs, and the status.
 template <class Real>
 struct RippleResultRow {
-  FilledVector<Real> torque_Nm;
-  FilledVector<Real> ripple_Nm;
+  FilledVector<Real> first;
+  FilledVector<Real> second;
   FilledVector<std::uint32_t> status;
 
-  explicit RippleResultRow(std::size_t size) : torque_Nm(size), ripple_Nm(size), status(size) {}
+  explicit RippleResultRow(std::size_t size) : first(size), second(size), status(size) {}
 };
 template <class Real>
 using RippleGiven = std::tuple<VectorOut<Real>, VectorOut<Real>, VectorOut<std::uint32_t>>;
@@ -68,7 +69,10 @@ class RippleBatch {
   using Rows = std::vector<
       std::tuple<Vector<double>, Vector<double>, Vector<Real>, std::optional<Vector<Real>>>>;
 
-  explicit RippleBatch(const std::vector<RippleConfigD>& configs) {
+  RippleBatch(const std::vector<RippleConfigD>& configs, const std::vector<LearnedD>& kept) {
+    if (!kept.empty()) {
+      require_same_length("learned", kept.size(), "configs", configs.size());
+    }
     for (const RippleConfigD& each : configs) {
       if (pair_count(each) > batch_pairs) {
         raise_input_error("configs have more than " + std::to_string(batch_pairs) +
@@ -77,32 +81,41 @@ class RippleBatch {
       configs_.push_back(converted<Real, batch_pairs>(each));
       require(check(configs_.back()));  // what double holds may vanish or overflow in float
     }
+    for (std::size_t i = 0; i < kept.size(); ++i) {
+      require(check(configs[i], kept[i]));
+      kept_.push_back(converted<Real, batch_pairs>(kept[i]));
+    }
     reset();
   }
 
   void reset() {
     calls_.wait();
     states_.clear();
-    for (const Config& config : configs_) {
-      states_.push_back(initial_state(config));
+    for (std::size_t i = 0; i < configs_.size(); ++i) {
+      states_.push_back(kept_.empty() ? initial_state(configs_[i])
+                                      : restored(configs_[i], kept_[i]));
     }
     clocks_.assign(configs_.size(), SampleClock{});
   }
 
   std::vector<RippleGiven<Real>> process(const Rows& rows, bool angle_referenced, VectorLevel level,
                                          std::size_t threads) {
-    return run(rows, angle_referenced, [&](const std::vector<RippleChannel<Real>>& channels) {
-      process_batch<Real, batch_pairs>(configs_, states_, channels,
-                                       {.level = level, .thread_count = threads});
-    });
+    return run_batch(rows, angle_referenced, torque_and_ripple, level, threads);
+  }
+
+  std::vector<RippleGiven<Real>> innovations(const Rows& rows, bool angle_referenced,
+                                             VectorLevel level, std::size_t threads) {
+    return run_batch(rows, angle_referenced, {RippleOutput::innovation, RippleOutput::variance},
+                     level, threads);
   }
 
   std::pair<RippleGiven<Real>, LongReport> process_one(const Rows& rows, bool angle_referenced,
                                                        const LongOptions& options) {
     LongReport report;
-    auto given = run(rows, angle_referenced, [&](const std::vector<RippleChannel<Real>>& channels) {
-      report = process_long(configs_[0], states_[0], channels[0], options);
-    });
+    auto given = run(rows, angle_referenced, torque_and_ripple,
+                     [&](const std::vector<RippleChannel<Real>>& channels) {
+                       report = process_long(configs_[0], states_[0], channels[0], options);
+                     });
     return {std::move(given[0]), report};
   }
 
@@ -117,9 +130,22 @@ class RippleBatch {
   }
 
  private:
+  using Outputs = std::pair<RippleOutput, RippleOutput>;
+  static constexpr Outputs torque_and_ripple = {RippleOutput::torque, RippleOutput::ripple};
+
+  std::vector<RippleGiven<Real>> run_batch(const Rows& rows, bool angle_referenced,
+                                           const Outputs& outputs, VectorLevel level,
+                                           std::size_t threads) {
+    return run(rows, angle_referenced, outputs,
+               [&](const std::vector<RippleChannel<Real>>& channels) {
+                 process_batch<Real, batch_pairs>(configs_, states_, channels,
+                                                  {.level = level, .thread_count = threads});
+               });
+  }
+
   template <class Filter>
   std::vector<RippleGiven<Real>> run(const Rows& rows, bool angle_referenced,
-                                     const Filter& filter) {
+                                     const Outputs& outputs, const Filter& filter) {
     require_same_length("rows", rows.size(), "configs", configs_.size());
     std::vector<RippleChannel<Real>> channels(rows.size());
     std::vector<RippleResultRow<Real>> results;
@@ -139,8 +165,8 @@ class RippleBatch {
       channel.motor_angle_rad = angle_rad.data();
       channel.expected_torque_Nm = expected_Nm ? expected_Nm->data() : nullptr;
       channel.angle_referenced = angle_referenced;
-      channel.output(RippleOutput::torque) = result.torque_Nm.data();
-      channel.output(RippleOutput::ripple) = result.ripple_Nm.data();
+      channel.output(outputs.first) = result.first.data();
+      channel.output(outputs.second) = result.second.data();
       channel.status = result.status.data();
     }
     {
@@ -162,12 +188,13 @@ class RippleBatch {
     std::vector<RippleGiven<Real>> given;
     given.reserve(results.size());
     for (RippleResultRow<Real>& result : results) {
-      given.emplace_back(result.torque_Nm.give(), result.ripple_Nm.give(), result.status.give());
+      given.emplace_back(result.first.give(), result.second.give(), result.status.give());
     }
     return given;
   }
 
   std::vector<Config> configs_;
+  std::vector<LearnedRipple<Real, batch_pairs>> kept_;  ///< empty: from nothing
   std::vector<State> states_;
   std::vector<SampleClock> clocks_;
   CallLock calls_;
@@ -177,11 +204,14 @@ template <class Real>
 void bind_precision(nb::module_& m, const char* name) {
   using Batch = RippleBatch<Real>;
   nb::class_<Batch>(m, name, "Ripple filters side by side, each with its own state.")
-      .def(nb::init<const std::vector<RippleConfigD>&>(), "configs"_a)
-      .def("reset", &Batch::reset, "Back to the start.")
+      .def(nb::init<const std::vector<RippleConfigD>&, const std::vector<LearnedD>&>(), "configs"_a,
+           "learned"_a, "learned: coefficients to start with; none: from nothing.")
+      .def("reset", &Batch::reset, "Back to the start, learned coefficients included.")
       .def("process", &Batch::process, "rows"_a, "angle_referenced"_a, "level"_a, "threads"_a,
            "For each channel (time_s, motor_angle_rad, torque_Nm, expected_torque_Nm or None); "
            "returns torque, ripple and status of each.")
+      .def("innovations", &Batch::innovations, "rows"_a, "angle_referenced"_a, "level"_a,
+           "threads"_a, "The same; returns innovation, its variance and status of each.")
       .def(
           "process_long",
           [](Batch& self, const Batch::Rows& rows, bool angle_referenced, VectorLevel level,
@@ -204,6 +234,7 @@ void bind_precision(nb::module_& m, const char* name) {
 }  // namespace
 
 void bind_batch_ripple(nb::module_& m) {
+  m.attr("MOST_LANE_PAIRS") = batch_pairs;
   bind_precision<double>(m, "RippleBatchFloat64");
   bind_precision<float>(m, "RippleBatchFloat32");
 }

@@ -177,6 +177,95 @@ class OscillatorBatch:
         return BatchResult(clean, predicted, flags)
 
 
+class LongOscillatorFilter:
+    """One long log through the published filter in time chunks; the state goes on from call to call.
+
+    Parameters
+    ----------
+    config : OscillatorFilterConfig
+        The filter's configuration; it must turn by speed.
+    dtype : dtype_like
+        float64, or float32, twice as fast.
+    threads : int
+        Threads that share the chunks.
+    level : VectorLevel, optional
+        One of `available_vector_levels`; the highest one without.
+    in_sequence : bool
+        Exactly as `strainwave.OscillatorFilter` does it, sample after sample.
+    warm_up_memories : float
+        Memories of the filter by which a chunk starts early, by time and by travelled angle.
+    tolerance_Nm : float
+        Difference at a boundary beyond which the chunk after it is filtered again in sequence, Nm.
+    """
+
+    def __init__(
+        self,
+        config: _core.OscillatorFilterConfig,
+        *,
+        dtype: DTypeLike = np.float64,
+        threads: int = 1,
+        level: _core.VectorLevel | None = None,
+        in_sequence: bool = False,
+        warm_up_memories: float = 16.0,
+        tolerance_Nm: float = 1e-4,
+    ) -> None:
+        self._dtype: type[Any] = precision(dtype)
+        self._batch = _batch_type(self._dtype)(_configs([config]))
+        self._options = (
+            _level(level),
+            _threads(threads),
+            in_sequence,
+            _positive("warm_up_memories", warm_up_memories),
+            _positive("tolerance_Nm", tolerance_Nm),
+        )
+
+    def process(
+        self,
+        torque_Nm: ArrayLike,
+        *,
+        motor_speed_rad_s: ArrayLike,
+        expected_torque_Nm: ArrayLike | None = None,
+        ripple: bool = False,
+        status: bool = False,
+    ) -> LongResult:
+        """Remove the ripple from the next samples, a long piece of the log.
+
+        Parameters
+        ----------
+        torque_Nm, motor_speed_rad_s, expected_torque_Nm
+            As in `filter_long`.
+        ripple : bool
+            Whether to return the predicted ripple.
+        status : bool
+            Whether to return each sample's status.
+
+        Returns
+        -------
+        LongResult
+            Torque, ripple and status if asked for, the differences at the boundaries within the
+            piece, and the counters of all pieces so far.
+
+        Raises
+        ------
+        InputError
+            If an array is missing or of another length or kind.
+        """
+        real = self._dtype
+        torque = contiguous("torque_Nm", torque_Nm, real)
+        sizes = [len(torque)]
+        (speed,) = _rows("motor_speed_rad_s", [motor_speed_rad_s], real, 1, sizes)
+        expected = None
+        if expected_torque_Nm is not None:
+            (expected,) = _rows("expected_torque_Nm", [expected_torque_Nm], real, 1, sizes)
+        clean = np.empty(len(torque), dtype=real)
+        predicted = np.empty(len(torque), dtype=real) if ripple else None
+        flags = np.empty(len(torque), dtype=np.uint32) if status else None
+        report = self._batch.process_long(
+            torque, speed, expected, clean, predicted, flags, *self._options
+        )
+        return LongResult(clean, predicted, flags, dict(self._batch.counters[0]), report)
+
+
 def filter_long(
     config: _core.OscillatorFilterConfig,
     torque_Nm: ArrayLike,
@@ -231,31 +320,22 @@ def filter_long(
     InputError
         If an array is missing or of another length or kind, or an option cannot be.
     """
-    real: type[Any] = precision(dtype)
-    batch = _batch_type(real)(_configs([config]))
-    torque = contiguous("torque_Nm", torque_Nm, real)
-    sizes = [len(torque)]
-    (speed,) = _rows("motor_speed_rad_s", [motor_speed_rad_s], real, 1, sizes)
-    expected = None
-    if expected_torque_Nm is not None:
-        (expected,) = _rows("expected_torque_Nm", [expected_torque_Nm], real, 1, sizes)
-    clean = np.empty(len(torque), dtype=real)
-    predicted = np.empty(len(torque), dtype=real) if ripple else None
-    flags = np.empty(len(torque), dtype=np.uint32) if status else None
-    report = batch.process_long(
-        torque,
-        speed,
-        expected,
-        clean,
-        predicted,
-        flags,
-        _level(level),
-        _threads(threads),
-        in_sequence,
-        _positive("warm_up_memories", warm_up_memories),
-        _positive("tolerance_Nm", tolerance_Nm),
+    long_filter = LongOscillatorFilter(
+        config,
+        dtype=dtype,
+        threads=threads,
+        level=level,
+        in_sequence=in_sequence,
+        warm_up_memories=warm_up_memories,
+        tolerance_Nm=tolerance_Nm,
     )
-    return LongResult(clean, predicted, flags, dict(batch.counters[0]), report)
+    return long_filter.process(
+        torque_Nm,
+        motor_speed_rad_s=motor_speed_rad_s,
+        expected_torque_Nm=expected_torque_Nm,
+        ripple=ripple,
+        status=status,
+    )
 
 
 def _batch_type(

@@ -25,6 +25,7 @@ def filter_command(
     rated_torque: float | None = None,
     rate: float | None = None,
     absolute_angle: bool = False,
+    in_sequence: bool = False,
     report: Path | None = None,
     json: bool = False,
 ) -> None:
@@ -60,6 +61,9 @@ def filter_command(
     absolute_angle : bool
         The motor's angle counts from where the output is at 0: removes the joint file's misalignment,
         which is otherwise removed only by an angle of the output.
+    in_sequence : bool
+        Filter row after row. A recording of more than half a million rows is otherwise filtered in
+        time chunks side by side, where the method can, and the difference is said.
     report : Path
         A page that shows what was done, for a browser or to print: .html.
     json : bool
@@ -101,14 +105,26 @@ def filter_command(
         evidence = None
         if report is None:
             result = filter_log(
-                log, out, options, joint_path=joint, method=method, progress=progress
+                log,
+                out,
+                options,
+                joint_path=joint,
+                method=method,
+                in_sequence=in_sequence,
+                progress=progress,
             )
         else:
             from strainwave.evidence import filter_with_evidence
             from strainwave.report.recording import write_recording_report
 
             result, evidence = filter_with_evidence(
-                log, out, options, joint_path=joint, method=method, progress=progress
+                log,
+                out,
+                options,
+                joint_path=joint,
+                method=method,
+                in_sequence=in_sequence,
+                progress=progress,
             )
             progress("drawing", 0.8)
             given = {
@@ -120,6 +136,7 @@ def filter_command(
                 "--rated-torque": rated_torque,
                 "--rate": rate,
                 "--absolute-angle": absolute_angle,
+                "--in-sequence": in_sequence,
                 "--out": out,
                 "--report": report,
             }
@@ -160,6 +177,12 @@ def _summary(result: FilteredLog) -> list[str]:
         lines.append(
             f"  torque {result.torque_before_rms_Nm:.4g} Nm rms before and "
             f"{result.torque_after_rms_Nm:.4g} Nm after; ripple {result.ripple_rms_Nm:.4g} Nm rms"
+        )
+    chunks = result.time_chunks
+    if chunks is not None:
+        lines.append(
+            f"  in {chunks.count} time chunks, of which {chunks.repeated} again in sequence: at most "
+            f"{chunks.largest_difference_Nm:.1g} Nm from sequence (--in-sequence)"
         )
     if result.gauges is not None:
         lines.append(f"  gauges watched: {_gauges(result.gauges)}")

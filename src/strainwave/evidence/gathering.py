@@ -110,6 +110,7 @@ def filter_with_evidence(
     *,
     joint_path: Path | None = None,
     method: str | None = None,
+    in_sequence: bool = False,
     progress: Progress = untold,
 ) -> tuple[FilteredLog, Evidence]:
     """Filter a recording and gather what a report shows of it.
@@ -126,6 +127,8 @@ def filter_with_evidence(
         The joint file.
     method : str, optional
         Name of the method.
+    in_sequence : bool
+        Row after row, however long the recording is.
     progress : Progress
         Is told how far the work is.
 
@@ -146,6 +149,7 @@ def filter_with_evidence(
         options,
         joint_path=joint_path,
         method=method,
+        in_sequence=in_sequence,
         progress=progress,
         watch=witness,
     )

@@ -16,11 +16,16 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 import numpy as np
 
 from strainwave import _core
-from strainwave.identify.likelihood import block_sums, innovations, standardized_gain
+from strainwave.identify.likelihood import (
+    block_sums,
+    innovations,
+    innovations_of_all,
+    standardized_gain,
+)
 from strainwave.identify.reversals import Reversals, find_reversals
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
 
     from numpy.typing import NDArray
 
@@ -153,12 +158,22 @@ class _Search:
             **self._given,
         )
 
-    def run(self, memory_turns: float, terms: Terms) -> _Run:
-        found = innovations(self._excerpt, self.config(memory_turns, terms))
-        return _Run(memory_turns, found.rows, found.likelihoods())
-
-    def memories(self, terms: Terms, memories_turns: Sequence[float]) -> list[_Run]:
-        return [self.run(memory_turns, terms) for memory_turns in memories_turns]
+    def runs(
+        self, all_terms: Sequence[Terms], memories_turns: Sequence[float]
+    ) -> Iterator[tuple[Terms, list[_Run]]]:
+        """Run all terms with all memories, side by side; each terms' runs in the memories' order."""
+        configs = [
+            self.config(memory_turns, terms)
+            for terms in all_terms
+            for memory_turns in memories_turns
+        ]
+        found = iter(innovations_of_all(self._excerpt, configs))
+        for terms in all_terms:
+            runs = []
+            for memory_turns in memories_turns:
+                each = next(found)
+                runs.append(_Run(memory_turns, each.rows, each.likelihoods()))
+            yield terms, runs
 
     def cost(self, terms: Terms, rows: int) -> float:
         """Give what the terms have to gain per row."""
@@ -223,11 +238,11 @@ def choose_ripple_settings(
 
 def _without_direction(search: _Search, tried: Sequence[Terms]) -> tuple[Terms, list[_Run]]:
     """Choose load and speed terms; with the runs of every memory."""
-    best_terms, best_runs = Terms(), search.memories(Terms(), MEMORIES_TURNS)
+    candidates = search.runs([Terms(), *tried], MEMORIES_TURNS)
+    best_terms, best_runs = next(candidates)
     plain_held_out = _longest_of_the_best(best_runs).held_out_mean
     best_score = max(run.mean for run in best_runs)
-    for terms in tried:
-        runs = search.memories(terms, MEMORIES_TURNS)
+    for terms, runs in candidates:
         score = max(run.mean for run in runs) - search.cost(terms, len(runs[0].rows))
         held_out = _longest_of_the_best(runs).held_out_mean
         if score > best_score and held_out > plain_held_out:
@@ -251,10 +266,10 @@ def _with_direction(
     without = _longest_of_the_best(runs)
     best: tuple[float, Terms] | None = None
     # All again: ripple that differs by direction hides what follows load and speed, or looks so.
-    for candidate in tried:
-        with_direction = candidate._replace(direction=True)
-        for memory_turns in {without.memory_turns, *COARSE_MEMORIES_TURNS}:
-            run = search.run(memory_turns, with_direction)
+    candidates = [candidate._replace(direction=True) for candidate in tried]
+    memories_turns = sorted({without.memory_turns, *COARSE_MEMORIES_TURNS})
+    for with_direction, coarse in search.runs(candidates, memories_turns):
+        for run in coarse:
             score = run.mean - search.cost(with_direction, len(run.rows))
             if best is None or score > best[0]:
                 best = score, with_direction
@@ -262,7 +277,7 @@ def _with_direction(
     score, with_direction = best
     if score <= without.mean - search.cost(terms, len(without.rows)):
         return terms, runs
-    runs_with = search.memories(with_direction, MEMORIES_TURNS)
+    ((_, runs_with),) = search.runs([with_direction], MEMORIES_TURNS)
     chosen = _longest_of_the_best(runs_with)
     held_good = chosen.held_out_mean > without.held_out_mean
     if held_good and _gains_after_reversals(reversals.sums_after(*chosen.over(without))):

@@ -43,6 +43,21 @@ class Cleaned:
     def __len__(self) -> int:
         return len(self.torque_Nm)
 
+    def part(self, rows: slice) -> Cleaned:
+        """Take some of the rows.
+
+        Parameters
+        ----------
+        rows : slice
+            Which.
+
+        Returns
+        -------
+        Cleaned
+            These, without a copy.
+        """
+        return Cleaned(self.torque_Nm[rows], self.ripple_Nm[rows], self.status[rows])
+
 
 class Method(Protocol):
     """One way of removing ripple, with its state between chunks."""

@@ -40,8 +40,17 @@ class Published:
 
     def __init__(self, config: _core.OscillatorFilterConfig) -> None:
         self._filter = OscillatorFilter(config)
-        self._by_speed = config.rotation_source is _core.RotationSource.speed
         self._motion = BackwardDifference()
+
+    @property
+    def config(self) -> _core.OscillatorFilterConfig:
+        """Orders, variances, protection and sample period."""
+        return self._filter.config
+
+    @property
+    def turns_by_speed(self) -> bool:
+        """Whether the filter turns by speed x sample period; else by the angle."""
+        return self.config.rotation_source is _core.RotationSource.speed
 
     def process(self, samples: Samples, /) -> Cleaned:
         """Remove the ripple from the next rows.
@@ -57,7 +66,7 @@ class Published:
             One row for each.
         """
         speed_rad_s = angle_rad = None
-        if self._by_speed:
+        if self.turns_by_speed:
             speed_rad_s = self._motion.speeds(samples.time_s, samples.motor_angle_rad)
         else:
             angle_rad = samples.motor_angle_rad

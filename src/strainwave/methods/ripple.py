@@ -100,6 +100,7 @@ class Ripple:
         learned = None if joint is None else learned_of(joint)
         if learned is None and setting.excerpt is not None:
             learned = learned_at_the_start(setting.excerpt, self._settings.config)
+        self._learned_before = learned
         self._filter = RippleFilter(self._settings.config, learned=learned)
 
     @property
@@ -111,6 +112,11 @@ class Ripple:
     def filter(self) -> RippleFilter:
         """The filter with its state: configuration, learned coefficients, counters."""
         return self._filter
+
+    @property
+    def learned_before(self) -> _core.LearnedRipple | None:
+        """What the filter started with; None where it started with nothing."""
+        return self._learned_before
 
     def process(self, samples: Samples, /) -> Cleaned:
         """Remove the ripple from the next rows.

@@ -12,6 +12,7 @@ if TYPE_CHECKING:
 
     from strainwave._core import Rational
     from strainwave.identify.ripple_settings import RippleSettings
+    from strainwave.methods.time_chunks import TimeChunks
     from strainwave.records.gauge_watch import WatchedGauges
     from strainwave.records.layout import Layout
     from strainwave.records.survey import Survey
@@ -51,6 +52,9 @@ class FilteredLog:
         Over the rows without a fault, Nm; None where every row has one.
     gauges : WatchedGauges or None
         What the watch over the gauges found; None where there was none.
+    time_chunks : TimeChunks or None
+        How the recording was cut to be filtered side by side; None where it was filtered in
+        sequence.
     """
 
     path: Path
@@ -69,6 +73,7 @@ class FilteredLog:
     torque_after_rms_Nm: float | None = None
     ripple_rms_Nm: float | None = None
     gauges: WatchedGauges | None = None
+    time_chunks: TimeChunks | None = None
 
     def as_dict(self) -> dict[str, Any]:
         """Plain values by name, for `--json`.
@@ -102,6 +107,7 @@ class FilteredLog:
             "torque_before_rms_Nm": self.torque_before_rms_Nm,
             "torque_after_rms_Nm": self.torque_after_rms_Nm,
             "ripple_rms_Nm": self.ripple_rms_Nm,
+            "time_chunks": None if self.time_chunks is None else asdict(self.time_chunks),
             "gauge_watch": None if self.gauges is None else self.gauges.as_dict(),
             "warnings": list(self.warnings),
             "survey": {

@@ -10,13 +10,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from strainwave import _core
 from strainwave.errors import InputError
 from strainwave.fidelity.warning import fidelity_warnings
 from strainwave.joint import read_joint
-from strainwave.methods.interface import together
+from strainwave.methods.interface import Cleaned, together
 from strainwave.methods.registry import METHOD_NAMES, Setting, build_method
+from strainwave.methods.time_chunks import in_time_chunks
 from strainwave.records.checks import check_method, check_output, check_survey
 from strainwave.records.columns import find_columns
 from strainwave.records.filtered_log import FilteredLog
@@ -36,20 +38,22 @@ from strainwave.records.misalignment import misalignment_as_read
 from strainwave.records.opening import open_recording
 from strainwave.records.options import Options
 from strainwave.records.passes import Progress, sample_rows, survey_recording, untold
+from strainwave.records.pieces import LEAST_ROWS, in_pieces
 from strainwave.records.survey import estimated_rated_torque_Nm
-from strainwave.records.threads import done_behind
+from strainwave.records.threads import MOST_WAITING, done_behind
 from strainwave.records.writer import result_file
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
 
-    from numpy.typing import NDArray
-
-    from strainwave.methods.interface import Cleaned, Method
+    from strainwave.methods.interface import Method
     from strainwave.records.signals import Rows
     from strainwave.records.watching import Watch
 
 
+_Part = tuple[NDArray[np.float64], NDArray[np.float64], Cleaned]
+
+_ROWS_PER_SLICE: Final = 1 << 16
 _FLAGS: Final = tuple(_core.StatusFlag)
 _FAULTS: Final = np.uint32(_core.FAULT_MASK)
 
@@ -62,13 +66,15 @@ def filter_log(
     joint_path: Path | None = None,
     method: str | None = None,
     build: Callable[[str, Setting], Method] | None = None,
+    in_sequence: bool = False,
     progress: Progress = untold,
     watch: Watch | None = None,
 ) -> FilteredLog:
     """Remove the ripple from a recording of any length.
 
     The recording is passed over twice in chunks: once to see what it holds, and once to filter it.
-    Reading, filtering and writing go on at the same time.
+    Reading, filtering and writing go on at the same time. A long recording is filtered in time
+    chunks side by side, where the method can; how far that is from sequence is measured.
 
     Parameters
     ----------
@@ -86,6 +92,8 @@ def filter_log(
     build : callable, optional
         Builds a method from its name and a `Setting`; that of `strainwave.methods.registry`
         without.
+    in_sequence : bool
+        Row after row, however long the recording is.
     progress : Progress
         Is told how far the work is.
     watch : Watch, optional
@@ -144,30 +152,39 @@ def filter_log(
         watch.begin(survey.rows, name, replace(setting, ripple_settings=log.ripple_settings), build)
     gauge_watch = gauge_watch_of(layout, survey, found)
     rows = sample_rows(recording, layout, found, survey, progress, gauge_watch)
-    log = _filter(log, InOrder(remover), rows, watch)
+    chunked = None if in_sequence or survey.rows < LEAST_ROWS else in_time_chunks(remover)
+    if chunked is None:
+        log = _filter(log, InOrder(remover), rows, watch)
+    else:
+        log = _filter(log, InOrder(chunked), in_pieces(rows), watch, most_waiting=1)
     return replace(
         log,
+        time_chunks=None if chunked is None else chunked.time_chunks,
         gauges=None if gauge_watch is None else gauge_watch.result(),
         warnings=(*log.warnings, *gauge_sentences(layout, found, gauge_watch)),
     )
 
 
 def _filter(
-    log: FilteredLog, method: Method, parts: Iterator[Rows], watch: Watch | None
+    log: FilteredLog,
+    method: Method,
+    parts: Iterator[Rows],
+    watch: Watch | None,
+    most_waiting: int = MOST_WAITING,
 ) -> FilteredLog:
     tally = _Tally()
     waiting = _Waiting()
     with nullcontext() if log.out is None else result_file(log.out) as write:
 
-        def take(part: tuple[NDArray[np.float64], NDArray[np.float64], Cleaned]) -> None:
-            time_s, measured_Nm, cleaned = part
-            tally.take(measured_Nm, cleaned)
-            if watch is not None:
-                watch.take(time_s, measured_Nm, cleaned)
-            if write is not None:
-                write(time_s, measured_Nm, cleaned)
+        def take(part: _Part) -> None:
+            for time_s, measured_Nm, cleaned in _slices(part):
+                tally.take(measured_Nm, cleaned)
+                if watch is not None:
+                    watch.take(time_s, measured_Nm, cleaned)
+                if write is not None:
+                    write(time_s, measured_Nm, cleaned)
 
-        with done_behind(take) as put:
+        with done_behind(take, most_waiting=most_waiting) as put:
             for cleaned in _cleaned(method, parts, waiting):
                 if len(cleaned):
                     time_s, measured_Nm, of_gauges = waiting.pop(len(cleaned))
@@ -186,6 +203,14 @@ def _filter(
         torque_after_rms_Nm=after_Nm,
         ripple_rms_Nm=ripple_Nm,
     )
+
+
+def _slices(part: _Part) -> Iterator[_Part]:
+    """Hand out a part in slices that stay in a processor's cache."""
+    time_s, measured_Nm, cleaned = part
+    for start in range(0, len(cleaned), _ROWS_PER_SLICE):
+        rows = slice(start, start + _ROWS_PER_SLICE)
+        yield time_s[rows], measured_Nm[rows], cleaned.part(rows)
 
 
 def _cleaned(method: Method, parts: Iterator[Rows], waiting: _Waiting) -> Iterator[Cleaned]:

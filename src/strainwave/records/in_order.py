@@ -101,9 +101,9 @@ class InOrder:
             if end > len(results):
                 break
             self._flags.popleft()
-            parts.append(self._merged(flags, _part(results, start, end)))
+            parts.append(self._merged(flags, results.part(slice(start, end))))
             start = end
-        self._results = _part(results, start, len(results))
+        self._results = results.part(slice(start, None))
         return joined(parts)
 
     def _merged(self, flags: NDArray[np.uint32], good: Cleaned) -> Cleaned:
@@ -122,8 +122,3 @@ class InOrder:
             self._last = (float(merged.torque_Nm[-1]), float(merged.ripple_Nm[-1]))
         return merged
 
-
-def _part(cleaned: Cleaned, start: int, end: int) -> Cleaned:
-    return Cleaned(
-        cleaned.torque_Nm[start:end], cleaned.ripple_Nm[start:end], cleaned.status[start:end]
-    )

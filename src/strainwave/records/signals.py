@@ -232,7 +232,7 @@ class SampleBuilder:
         return angle_rad * self._gain
 
     def _release(self, accelerations: NDArray[np.float64]) -> Rows:
-        held = _joined(self._held)
+        held = joined_rows(self._held)
         count = len(accelerations)
         self._held = [held.part(slice(count, None))]
         ready = held.part(slice(count))
@@ -240,7 +240,19 @@ class SampleBuilder:
         return replace(ready, samples=replace(ready.samples, expected_torque_Nm=expected_Nm))
 
 
-def _joined(parts: list[Rows]) -> Rows:
+def joined_rows(parts: list[Rows]) -> Rows:
+    """Put consecutive rows together.
+
+    Parameters
+    ----------
+    parts : list of Rows
+        Rows in order.
+
+    Returns
+    -------
+    Rows
+        All of them.
+    """
     nothing = np.empty(0)
     none = Rows(nothing, Samples(nothing, nothing, nothing, nothing), np.empty(0, np.uint32))
     listed = [*parts, none]

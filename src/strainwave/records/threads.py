@@ -27,13 +27,15 @@ class _End:
         self.error = error
 
 
-def made_ahead(parts: Iterable[Part]) -> Iterator[Part]:
+def made_ahead(parts: Iterable[Part], *, most_waiting: int = MOST_WAITING) -> Iterator[Part]:
     """Let a thread make the next parts while the last ones are used.
 
     Parameters
     ----------
     parts : iterable
         What is made; the thread alone goes through it.
+    most_waiting : int
+        Parts that wait, and one more that is made already.
 
     Yields
     ------
@@ -41,7 +43,7 @@ def made_ahead(parts: Iterable[Part]) -> Iterator[Part]:
         The parts, in order.
     """
     made: SimpleQueue[Part | _End] = SimpleQueue()
-    room = threading.Semaphore(MOST_WAITING)
+    room = threading.Semaphore(most_waiting)
     given_up = threading.Event()
 
     def make() -> None:
@@ -71,7 +73,9 @@ def made_ahead(parts: Iterable[Part]) -> Iterator[Part]:
 
 
 @contextlib.contextmanager
-def done_behind(work: Callable[[Part], None]) -> Iterator[Callable[[Part], None]]:
+def done_behind(
+    work: Callable[[Part], None], *, most_waiting: int = MOST_WAITING
+) -> Iterator[Callable[[Part], None]]:
     """Let a thread work on parts while the next ones are made.
 
     All parts are worked on when the block ends. Where it ends with an exception, those that wait are
@@ -81,6 +85,8 @@ def done_behind(work: Callable[[Part], None]) -> Iterator[Callable[[Part], None]
     ----------
     work : callable
         Takes one part after the other, in order.
+    most_waiting : int
+        Parts that wait or are worked on.
 
     Yields
     ------
@@ -88,7 +94,7 @@ def done_behind(work: Callable[[Part], None]) -> Iterator[Callable[[Part], None]
         Hands a part to the thread; raises what went wrong with an earlier one.
     """
     waiting: SimpleQueue[Part | _End] = SimpleQueue()
-    room = threading.Semaphore(MOST_WAITING)
+    room = threading.Semaphore(most_waiting)
     given_up = threading.Event()
     errors: list[BaseException] = []
 
