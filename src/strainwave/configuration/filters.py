@@ -4,19 +4,16 @@ from __future__ import annotations
 
 import math
 from fractions import Fraction
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING
 
 from strainwave import _core
 from strainwave.configuration.sections import missing, required
 from strainwave.errors import ConfigurationError, InputError
-from strainwave.joint import OscillatorFilter, RippleFilter, order_value
 from strainwave.ripple_filter import RippleFilter as RunningRippleFilter
 
 if TYPE_CHECKING:
-    from strainwave.joint import Gear, Joint, Misalignment
+    from strainwave.joint import Gear, Joint, Misalignment, OscillatorFilter, RippleFilter
     from strainwave.joint.provenance import Section
-
-FilterType = TypeVar("FilterType", OscillatorFilter, RippleFilter)
 
 LARGEST_PART = 2**31 - 1
 """Largest numerator and denominator of an order in the core."""
@@ -52,11 +49,11 @@ def oscillator_filter_of(joint: Joint) -> _core.OscillatorFilterConfig:
     InputError
         If a section is missing, or the section's method is another one.
     """
-    section = _of_method(joint, OscillatorFilter, "oscillator")
+    section = _oscillator_section(joint)
     variances = list(section.process_noise_variances_Nm2)
     given = _given(section, "minimum_travel_rad", "minimum_speed_rad_s", "variance_limit_ratio")
     return _core.OscillatorFilterConfig(
-        orders=[_core_order(order_value(order, joint.gear)) for order in section.orders],
+        orders=[_order(joint, order) for order in section.orders],
         process_noise_variance_Nm2=variances[0] if len(variances) == 1 else variances,
         measurement_noise_variance_Nm2=section.measurement_noise_variance_Nm2,
         initial_variance_Nm2=section.initial_variance_Nm2,
@@ -90,7 +87,7 @@ def ripple_filter_of(joint: Joint) -> _core.RippleFilterConfig:
         If a section is missing, the section's method is another one, or the core cannot use a
         value.
     """
-    section = _of_method(joint, RippleFilter, "ripple")
+    section = _ripple_section(joint)
     given = _given(section, "initial_amplitude_Nm", "reference_speed_rad_s", "minimum_speed_rad_s")
     if joint.gear is not None:
         given["rated_torque_Nm"] = joint.gear.rated_torque_Nm
@@ -132,7 +129,7 @@ def learned_of(joint: Joint) -> _core.LearnedRipple | None:
     InputError
         If the section is missing, or its method is another one.
     """
-    section = _of_method(joint, RippleFilter, "ripple")
+    section = _ripple_section(joint)
     if section.learned_coefficients_Nm is None or section.learned_standard_deviations_Nm is None:
         return None
     scale_Nm = section.learned_innovation_scale_Nm
@@ -160,23 +157,43 @@ def running_ripple_filter(joint: Joint) -> RunningRippleFilter:
     return RunningRippleFilter(ripple_filter_of(joint), learned=learned_of(joint))
 
 
-def _of_method(joint: Joint, model: type[FilterType], method: str) -> FilterType:
-    """Return the section ``[ripple_filter]`` if it is of this method."""
-    section = joint.ripple_filter
-    if section is None:
+def _section(joint: Joint) -> OscillatorFilter | RippleFilter:
+    if joint.ripple_filter is None:
         raise missing(joint, "ripple_filter")
-    if not isinstance(section, model):
-        raise InputError(
-            f'joint "{joint.identity.name}": [ripple_filter] has method = "{section.method}"; '
-            f'expected method = "{method}" for this filter, so fill the section for it, or use the '
-            f"{section.method} filter"
-        )
+    return joint.ripple_filter
+
+
+def _oscillator_section(joint: Joint) -> OscillatorFilter:
+    section = _section(joint)
+    if section.method != "oscillator":
+        raise _another_method(joint, section.method, "oscillator")
     return section
+
+
+def _ripple_section(joint: Joint) -> RippleFilter:
+    section = _section(joint)
+    if section.method != "ripple":
+        raise _another_method(joint, section.method, "ripple")
+    return section
+
+
+def _another_method(joint: Joint, found: str, expected: str) -> InputError:
+    return InputError(
+        f'joint "{joint.identity.name}": [ripple_filter] has method = "{found}"; expected method = '
+        f'"{expected}" for this filter, so fill the section for it, or use the {found} filter'
+    )
 
 
 def _given(section: Section, *names: str) -> dict[str, float]:
     """Return those of the keys that the section has, so that the others are the core's own."""
     return {name: value for name in names if (value := getattr(section, name)) is not None}
+
+
+def _order(joint: Joint, order: float | str) -> float | Fraction:
+    # Who has no joint file does not wait for the library that checks it.
+    from strainwave.joint import order_value  # noqa: PLC0415
+
+    return _core_order(order_value(order, joint.gear))
 
 
 def _core_order(value: float | Fraction) -> float | Fraction:
@@ -191,7 +208,7 @@ def _core_order(value: float | Fraction) -> float | Fraction:
 def _ripple_orders(joint: Joint, section: RippleFilter) -> list[_core.RippleOrder]:
     return [
         _core.RippleOrder(
-            _core_order(order_value(order, joint.gear)),
+            _order(joint, order),
             with_load=order in section.load_orders,
             with_speed=order in section.speed_orders,
             with_direction=order in section.direction_orders,

@@ -5,12 +5,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, TypeVar
 
 from strainwave.errors import InputError
-from strainwave.joint.provenance import Section
 
 if TYPE_CHECKING:
     from strainwave.joint import Joint
+    from strainwave.joint.provenance import Section
 
-SectionType = TypeVar("SectionType", bound=Section)
+SectionType = TypeVar("SectionType", bound="Section")
 
 
 def missing(joint: Joint, name: str) -> InputError:

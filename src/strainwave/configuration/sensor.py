@@ -15,7 +15,6 @@ from strainwave.configuration.gauge_monitor import gauge_monitor_of
 from strainwave.configuration.gear import gear_of
 from strainwave.configuration.sections import required
 from strainwave.errors import InputError
-from strainwave.joint import RippleFilter
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -87,7 +86,7 @@ def sensor_of(joint: Joint) -> _core.TorqueSensorConfig:
         If a section, the converter or, for the ripple filter, the sampling rate is missing.
     """
     filter_config: _core.RippleFilterConfig | _core.OscillatorFilterConfig
-    if isinstance(joint.ripple_filter, RippleFilter):
+    if joint.ripple_filter is not None and joint.ripple_filter.method == "ripple":
         filter_config = ripple_filter_of(joint)
         sample_period_s = _sample_period_s(joint)
     else:
@@ -181,7 +180,7 @@ def verify(joint: Joint) -> None:
     has_gear = joint.gear is not None
     filter_builder: Callable[[Joint], object] = oscillator_filter_of
     has_filter = joint.ripple_filter is not None
-    if isinstance(joint.ripple_filter, RippleFilter):
+    if joint.ripple_filter is not None and joint.ripple_filter.method == "ripple":
         filter_builder = running_ripple_filter
         has_filter = has_gear or joint.misalignment is None
     has_converter = joint.gauges is not None and joint.gauges.converter_bits is not None

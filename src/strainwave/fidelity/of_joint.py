@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any, Final
 
 from strainwave.errors import InputError
 from strainwave.fidelity.subject import Subject
-from strainwave.joint import OscillatorFilter, RippleFilter
 from strainwave.methods.orders import RIPPLE_METHODS, removed_orders
 from strainwave.methods.registry import METHOD_NAMES, Setting, build_method
 
@@ -58,7 +57,9 @@ def subject_of_joint(joint: Joint, method: str | None = None) -> Subject:
     else:
         rated_Nm = joint.gear.rated_torque_Nm
         ratio, wave = Fraction(joint.gear.ratio), joint.gear.exact_factor_m
-    if name in RIPPLE_METHODS and not isinstance(joint.ripple_filter, RippleFilter):
+    if name in RIPPLE_METHODS and (
+        joint.ripple_filter is None or joint.ripple_filter.method != "ripple"
+    ):
         assumptions.append(
             'there is no section [ripple_filter] of method "ripple": the standard orders, noise and '
             "memory are assumed, which a recording may change"
@@ -126,7 +127,7 @@ def _sample_period_s(joint: Joint, name: str) -> tuple[float, list[str]]:
     section = joint.ripple_filter
     if joint.signals is not None and joint.signals.sampling_rate_Hz is not None:
         return 1.0 / joint.signals.sampling_rate_Hz, []
-    if isinstance(section, OscillatorFilter) and name == "oscillator":
+    if section is not None and section.method == "oscillator" and name == "oscillator":
         return section.sample_period_s, []
     return ASSUMED_PERIOD_S, [
         f"there is no sampling_rate_Hz in [signals]: a sample period of {1e3 * ASSUMED_PERIOD_S:g} "
@@ -135,7 +136,8 @@ def _sample_period_s(joint: Joint, name: str) -> tuple[float, list[str]]:
 
 
 def _without_what_was_learned(joint: Joint | None) -> Joint | None:
-    if joint is None or not isinstance(joint.ripple_filter, RippleFilter):
+    section = None if joint is None else joint.ripple_filter
+    if joint is None or section is None or section.method != "ripple":
         return joint
     nothing = dict.fromkeys(
         (
@@ -144,5 +146,4 @@ def _without_what_was_learned(joint: Joint | None) -> Joint | None:
             "learned_innovation_scale_Nm",
         )
     )
-    section = joint.ripple_filter.model_copy(update=nothing)
-    return joint.model_copy(update={"ripple_filter": section})
+    return joint.model_copy(update={"ripple_filter": section.model_copy(update=nothing)})

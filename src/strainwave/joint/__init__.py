@@ -37,7 +37,7 @@ from strainwave.joint.signals import (
 )
 from strainwave.joint.temperature import Temperature
 from strainwave.joint.torque_calibration import TorqueCalibration
-from strainwave.joint.units import Conversion, conversion
+from strainwave.units import Conversion, conversion
 
 __all__ = [
     "SCHEMA_VERSION",

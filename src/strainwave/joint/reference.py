@@ -22,7 +22,7 @@ from strainwave.joint.history import HistoryEntry
 from strainwave.joint.model import SECTION_MODELS, Identity, Joint
 from strainwave.joint.provenance import Provenance
 from strainwave.joint.signals import Column
-from strainwave.joint.units import BASE_UNITS, Quantity, allowed_units
+from strainwave.units import BASE_UNITS, Quantity, allowed_units
 
 #: Quantities of tables that calibrations read, which have no column in `[signals]`.
 _NOT_IN_A_JOINT_FILE: Final = ("acceleration", "force", "number")

@@ -9,7 +9,7 @@ from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 
 from strainwave.joint.base import FilePart, Line, ListOf, Unit, refuse_boolean
 from strainwave.joint.provenance import Section
-from strainwave.joint.units import check_unit
+from strainwave.units import check_unit
 
 AngleSide = Literal["motor", "output"]
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from strainwave.joint.units import conversion
+from strainwave.units import conversion
 from strainwave.records.mapping import gauge_key, is_gauge_key, quantity_of
 
 if TYPE_CHECKING:

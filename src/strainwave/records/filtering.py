@@ -15,7 +15,6 @@ from numpy.typing import NDArray
 from strainwave import _core
 from strainwave.errors import InputError
 from strainwave.fidelity.warning import fidelity_warnings
-from strainwave.joint import read_joint
 from strainwave.methods.interface import Cleaned, together
 from strainwave.methods.registry import METHOD_NAMES, Setting, build_method
 from strainwave.methods.time_chunks import in_time_chunks
@@ -46,6 +45,7 @@ from strainwave.records.writer import result_file
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
 
+    from strainwave.joint import Joint
     from strainwave.methods.interface import Method
     from strainwave.records.signals import Rows
     from strainwave.records.watching import Watch
@@ -113,7 +113,7 @@ def filter_log(
     out = None if out is None else Path(out)
     if out is not None:
         check_output(out, path, joint_path)
-    joint = None if joint_path is None else read_joint(joint_path).joint
+    joint = None if joint_path is None else _read_joint(joint_path)
     name = method_name(method, joint)
     is_known = build is None
     if build is None:
@@ -163,6 +163,13 @@ def filter_log(
         gauges=None if gauge_watch is None else gauge_watch.result(),
         warnings=(*log.warnings, *gauge_sentences(layout, found, gauge_watch)),
     )
+
+
+def _read_joint(path: Path) -> Joint:
+    # Who has no joint file does not wait for the library that checks it.
+    from strainwave.joint import read_joint  # noqa: PLC0415
+
+    return read_joint(path).joint
 
 
 def _filter(

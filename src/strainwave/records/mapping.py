@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Final, Literal
 
 from strainwave.errors import InputError
-from strainwave.joint.units import BASE_UNITS, Quantity, allowed_units, check_unit
+from strainwave.units import BASE_UNITS, Quantity, allowed_units, check_unit
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -38,7 +38,7 @@ class MappedColumn:
     column : str or int
         Name of the column, or its number counted from 1.
     unit : str
-        Unit of the column, one of `strainwave.joint.units.allowed_units`.
+        Unit of the column, one of `strainwave.units.allowed_units`.
     sign : {1, -1}
         -1 where the column counts against the positive direction.
     quoted : bool

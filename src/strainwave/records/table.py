@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from strainwave.errors import InputError
-from strainwave.joint.units import conversion
+from strainwave.units import conversion
 from strainwave.records.columns import find_columns
 from strainwave.records.mapping import parse_columns
 from strainwave.records.opening import open_recording
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from strainwave.joint.units import Quantity
+    from strainwave.units import Quantity
     from strainwave.records.columns import FoundColumn
     from strainwave.records.mapping import MapKeys, MappedColumn
     from strainwave.records.raw import RawChunk, Recording
