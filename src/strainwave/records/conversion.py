@@ -139,7 +139,7 @@ class Converter:
         else:
             factor = sign * unit.factor
             scaled = values if factor == 1.0 else values * factor
-            converted = scaled + unit.offset
+            converted = scaled + unit.offset if unit.offset else scaled
         if _within(converted, LARGEST_USABLE):
             return converted
         # What the core would reject is not there: nothing that follows has to think of overflow.
@@ -151,12 +151,11 @@ class Converter:
         sign = self._found["time"].sign
         # Divided, because 3 ms / 1000 is 0.003 and 3 ms * 0.001 is not.
         per_second = sign * float(round(1.0 / unit.factor))
-        log_time_s = stamps.values / per_second
+        log_time_s = _divided(stamps.values, per_second)
         # The second limit is that of differences of whole numbers.
         largest = min(LARGEST_USABLE, 0.5 * _LARGEST_DIFFERENCE / abs(per_second))
         if self._origin is not None and _within(log_time_s, largest) and not stamps.missing.any():
-            since = np.asarray(stamps.values - self._origin, dtype=np.float64)
-            return log_time_s, since / per_second
+            return log_time_s, _divided(stamps.values - self._origin, per_second)
         usable = (np.abs(log_time_s) <= LARGEST_USABLE) & (
             np.abs(log_time_s * per_second) < _LARGEST_DIFFERENCE
         )
@@ -167,6 +166,13 @@ class Converter:
         # What is missing is replaced first, so that no difference overflows.
         known = np.where(usable, stamps.values, origin) - origin
         return np.where(usable, log_time_s, np.nan), np.where(usable, known / per_second, np.nan)
+
+
+def _divided(
+    values: NDArray[np.int64] | NDArray[np.float64], divisor: float
+) -> NDArray[np.float64]:
+    found = np.asarray(values, dtype=np.float64)
+    return found if divisor == 1.0 else found / divisor
 
 
 def _within(values: NDArray[np.float64], largest: float) -> bool:

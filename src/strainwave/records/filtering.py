@@ -183,20 +183,28 @@ def _filter(
     waiting = _Waiting()
     with nullcontext() if log.out is None else result_file(log.out) as write:
 
-        def take(part: _Part) -> None:
-            for time_s, measured_Nm, cleaned in _slices(part):
+        def count(part: _Part) -> None:
+            for _, measured_Nm, cleaned in _slices(part):
                 tally.take(measured_Nm, cleaned)
+
+        def hand_out(part: _Part) -> None:
+            for time_s, measured_Nm, cleaned in _slices(part):
                 if watch is not None:
                     watch.take(time_s, measured_Nm, cleaned)
                 if write is not None:
                     write(time_s, measured_Nm, cleaned)
 
-        with done_behind(take, most_waiting=most_waiting) as put:
+        with (
+            done_behind(count, most_waiting=most_waiting) as put_to_count,
+            done_behind(hand_out, most_waiting=most_waiting) as put_out,
+        ):
             for cleaned in _cleaned(method, parts, waiting):
                 if len(cleaned):
                     time_s, measured_Nm, of_gauges = waiting.pop(len(cleaned))
                     status = joined_status(cleaned.status, of_gauges)
-                    put((time_s, measured_Nm, replace(cleaned, status=status)))
+                    part = (time_s, measured_Nm, replace(cleaned, status=status))
+                    put_to_count(part)
+                    put_out(part)
         if tally.rows != log.survey.rows:
             raise InputError(
                 f"{log.path}: it had {log.survey.rows} rows at first and {tally.rows} later; "

@@ -37,10 +37,15 @@ class LogHistogram:
         """
         if not len(values):
             return
-        bins = ((np.log10(values) - _LOWEST_DECADE) * _BINS_PER_DECADE).astype(np.int64)
-        np.clip(bins, 0, len(self._counts) - 1, out=bins)
-        # Most values lie in few bins, and the others need not be gone through.
+        places = np.log10(values)
+        places -= _LOWEST_DECADE
+        places *= _BINS_PER_DECADE
+        bins = places.astype(np.int64)
         first, last = int(bins.min()), int(bins.max())
+        if first < 0 or last >= len(self._counts):
+            np.clip(bins, 0, len(self._counts) - 1, out=bins)
+            first, last = int(bins.min()), int(bins.max())
+        # Most values lie in few bins, and the others need not be gone through.
         bins -= first
         found = slice(first, last + 1)
         self._counts[found] += np.bincount(bins)

@@ -56,6 +56,19 @@ class _Since:
     repeated: int = 0
     squares: float = 0.0
 
+    def add(self, value_steps: NDArray[np.float64], torque_steps: NDArray[np.float64]) -> None:
+        self.rows += len(value_steps)
+        self.repeated += _repeated(value_steps, torque_steps)
+        self.squares += _squares(torque_steps)
+
+
+def _repeated(value_steps: NDArray[np.float64], torque_steps: NDArray[np.float64]) -> int:
+    return int(np.count_nonzero((value_steps == 0.0) & (torque_steps == 0.0)))
+
+
+def _squares(torque_steps: NDArray[np.float64]) -> float:
+    return float(np.sum(np.where(np.isfinite(torque_steps), torque_steps**2, 0.0)))
+
 
 class MovingTally:
     """Takes angles or speeds of rows in order, chunk by chunk.
@@ -116,11 +129,12 @@ class MovingTally:
             self._last_row = (float(time_s[-1]), float(value[-1]), float(torque_Nm[-1]))
             return
         torque_steps = steps(torque_Nm, last_torque_Nm)
-        repeated = (value_steps == 0.0) & (torque_steps == 0.0)
-        squares = np.where(np.isfinite(torque_steps), torque_steps**2, 0.0)
         # A mapped speed says for every row by itself how fast the motor is.
-        ends = np.arange(len(value)) if self._is_speed else np.flatnonzero(value_steps != 0.0)
-        self._count(time_s, value, repeated, squares, ends)
+        if self._is_speed:
+            changed = np.ones(len(value), np.bool_)
+        else:
+            changed = value_steps != 0.0
+        self._count(time_s, value, value_steps, torque_steps, changed)
         self._last_row = (float(time_s[-1]), float(value[-1]), float(torque_Nm[-1]))
 
     def _moves_on(
@@ -157,54 +171,71 @@ class MovingTally:
         self,
         time_s: NDArray[np.float64],
         value: NDArray[np.float64],
-        repeated: NDArray[np.bool_],
-        squares: NDArray[np.float64],
-        ends: NDArray[np.intp],
+        value_steps: NDArray[np.float64],
+        torque_steps: NDArray[np.float64],
+        changed: NDArray[np.bool_],
     ) -> None:
-        past = _Since(len(value), int(repeated.sum()), float(squares.sum()))
-        if not len(ends):
-            self._since.rows += past.rows
-            self._since.repeated += past.repeated
-            self._since.squares += past.squares
+        held = np.flatnonzero(~changed)
+        if len(held) == len(value):
+            self._since.add(value_steps, torque_steps)
             return
-        since = self._since
-        rows = np.diff(ends + 1, prepend=0)
-        repeats = np.diff(np.cumsum(repeated)[ends], prepend=0)
-        power = np.diff(np.cumsum(squares)[ends], prepend=0.0)
-        rows[0] += since.rows
-        repeats[0] += since.repeated
-        power[0] += since.squares
-        travels = steps(value[ends], self._last_change[1])
+        ends = slice(None) if not len(held) else np.flatnonzero(changed)
+        travels = value_steps[ends]
         if self._wrapped:
-            travels -= _TURN_RAD * np.rint(travels / _TURN_RAD)
+            travels = travels - _TURN_RAD * np.rint(travels / _TURN_RAD)
         times = steps(time_s[ends], self._last_change[0])
         np.maximum(times, _SHORTEST_S, out=times)
-        speeds = np.abs(value[ends]) * self._gain
-        if not self._is_speed:
+        if self._is_speed:
+            speeds = np.abs(value) * self._gain
+        else:
             speeds = self._speeds_of(travels, times)
         moving = speeds > MOVING_RAD_S
-        self._moving += int(rows[moving].sum())
-        self._repeated += int(repeats[moving].sum())
-        self._rest_rows += int(rows[~moving].sum())
-        self._rest_squares += float(power[~moving].sum())
+        self._moving += int(np.count_nonzero(moving))
+        at_rest = torque_steps[ends][~moving]
+        self._rest_rows += len(at_rest)
+        self._rest_squares += _squares(at_rest)
         if self._is_speed:
+            self._repeated += _repeated(value_steps[moving], torque_steps[moving])
             self._speeds.add(speeds[moving])
         else:
             self._add_speeds(travels, times)
-        self._last_change = (float(time_s[ends[-1]]), float(value[ends[-1]]))
-        last = int(ends[-1]) + 1
-        self._since = _Since(
-            past.rows - last, int(repeated[last:].sum()), float(squares[last:].sum())
-        )
+        last = len(value) - 1
+        if len(held):
+            last = int(ends[-1])
+            self._count_held(held[: np.searchsorted(held, last)], ends, moving, torque_steps)
+        self._close_since(moves=bool(moving[0]))
+        self._last_change = (float(time_s[last]), float(value[last]))
+        self._since.add(value_steps[last + 1 :], torque_steps[last + 1 :])
+
+    def _count_held(
+        self,
+        held: NDArray[np.intp],
+        ends: NDArray[np.intp],
+        moving: NDArray[np.bool_],
+        torque_steps: NDArray[np.float64],
+    ) -> None:
+        # A row in which the angle did not change belongs to the change after it.
+        moves = moving[np.searchsorted(ends, held)]
+        self._moving += int(np.count_nonzero(moves))
+        self._repeated += int(np.count_nonzero(torque_steps[held[moves]] == 0.0))
+        at_rest = torque_steps[held[~moves]]
+        self._rest_rows += len(at_rest)
+        self._rest_squares += _squares(at_rest)
+
+    def _close_since(self, *, moves: bool) -> None:
+        since, self._since = self._since, _Since()
+        if moves:
+            self._moving += since.rows
+            self._repeated += since.repeated
+        else:
+            self._rest_rows += since.rows
+            self._rest_squares += since.squares
 
     def _add_speeds(self, travels: NDArray[np.float64], times: NDArray[np.float64]) -> None:
         travels = np.concatenate([self._group[0], travels])
         times = np.concatenate([self._group[1], times])
         whole = len(travels) - len(travels) % _CHANGES_PER_SPEED
-        self._add_groups(
-            travels[:whole].reshape(-1, _CHANGES_PER_SPEED).sum(axis=1),
-            times[:whole].reshape(-1, _CHANGES_PER_SPEED).sum(axis=1),
-        )
+        self._add_groups(_sums_of_groups(travels[:whole]), _sums_of_groups(times[:whole]))
         self._group = (travels[whole:], times[whole:])
 
     def _add_groups(self, travels: NDArray[np.float64], times: NDArray[np.float64]) -> None:
@@ -235,3 +266,10 @@ class MovingTally:
             # The difference of two rows has twice the variance of one.
             math.sqrt(0.5 * rest_squares / rest_rows) if rest_rows else None,
         )
+
+
+def _sums_of_groups(values: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Add up groups of `_CHANGES_PER_SPEED`, a power of two, by pairs of pairs."""
+    for _ in range(_CHANGES_PER_SPEED.bit_length() - 1):
+        values = values[0::2] + values[1::2]
+    return values

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Final, Generic, TypeVar
 
 import numpy as np
 
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from strainwave.records.survey import Survey
 
 _TURN_RAD: Final = 2.0 * math.pi
+Number = TypeVar("Number", bound=np.generic)
 
 
 @dataclass(frozen=True)
@@ -149,6 +150,24 @@ class SpeedIntegration:
         return found
 
 
+class _Zeros(Generic[Number]):
+    """Zeros of one memory for all chunks, which nobody writes to."""
+
+    def __init__(self, kind: type[Number]) -> None:
+        self._kind = kind
+        self._zeros = self._of(0)
+
+    def take(self, count: int) -> NDArray[Number]:
+        if count > len(self._zeros):
+            self._zeros = self._of(count)
+        return self._zeros[:count]
+
+    def _of(self, count: int) -> NDArray[Number]:
+        zeros = np.zeros(count, self._kind)
+        zeros.setflags(write=False)
+        return zeros
+
+
 class SampleBuilder:
     """Makes samples of columns, chunk by chunk; how the log is cut makes no difference.
 
@@ -181,6 +200,8 @@ class SampleBuilder:
                 ratio = float(layout.ratio) * layout.output_direction
             self._torque_per_acceleration = layout.load_inertia_kg_m2 / ratio
         self._held: list[Rows] = []
+        self._no_torque_Nm = _Zeros(np.float64)
+        self._no_status = _Zeros(np.uint32)
 
     def take(self, columns: Columns) -> Rows:
         """Take the next rows.
@@ -199,8 +220,8 @@ class SampleBuilder:
         angle_rad = self._motor_angle(columns)
         expected_Nm = columns.expected_torque_Nm
         if expected_Nm is None:
-            expected_Nm = np.zeros(len(columns))
-        torque_Nm, status = columns.torque_Nm, np.zeros(len(columns), np.uint32)
+            expected_Nm = self._no_torque_Nm.take(len(columns))
+        torque_Nm, status = columns.torque_Nm, self._no_status.take(len(columns))
         if self._watch is not None:
             torque_Nm, status = self._watch.take(columns, angle_rad)
         samples = Samples(columns.time_s, angle_rad, torque_Nm, expected_Nm)
@@ -229,7 +250,7 @@ class SampleBuilder:
             angle_rad = self._unwrapping.unwrap(columns.angle_rad)
         else:
             angle_rad = columns.angle_rad
-        return angle_rad * self._gain
+        return angle_rad if self._gain == 1.0 else angle_rad * self._gain
 
     def _release(self, accelerations: NDArray[np.float64]) -> Rows:
         held = joined_rows(self._held)
@@ -251,8 +272,11 @@ def joined_rows(parts: list[Rows]) -> Rows:
     Returns
     -------
     Rows
-        All of them.
+        All of them; the only part that has any as it is.
     """
+    parts = [part for part in parts if len(part)]
+    if len(parts) == 1:
+        return parts[0]
     nothing = np.empty(0)
     none = Rows(nothing, Samples(nothing, nothing, nothing, nothing), np.empty(0, np.uint32))
     listed = [*parts, none]

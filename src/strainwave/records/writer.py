@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from strainwave.methods.interface import Cleaned
 
 COLUMNS: Final = ("time_s", "torque_measured_Nm", "torque_Nm", "ripple_Nm", "status")
-_SCHEMA = pa.schema([*((name, pa.float64()) for name in COLUMNS[:-1]), (COLUMNS[-1], pa.uint32())])
+_KINDS: Final = (*(pa.float64() for _ in COLUMNS[:-1]), pa.uint32())
 _ROWS_PER_WRITE = 1 << 17
 _CSV_HEADER = (",".join(COLUMNS) + "\n").encode()
 
@@ -50,6 +50,10 @@ def result_file(
         If the file cannot be written.
     """
     is_csv = path.suffix.lower() == ".csv"
+    # In Parquet a value that is not there is NaN: that none is null need not be written for each.
+    schema = pa.schema(
+        [pa.field(name, kind, is_csv) for name, kind in zip(COLUMNS, _KINDS, strict=True)]
+    )
     with replaced_atomically(path) as stream:
         writer: CSVWriter | ParquetWriter
         if is_csv:
@@ -57,18 +61,18 @@ def result_file(
 
             # Arrow puts names in quotes, which no reader of ours needs.
             stream.write(_CSV_HEADER)
-            writer = CSVWriter(stream, _SCHEMA, write_options=WriteOptions(include_header=False))
+            writer = CSVWriter(stream, schema, write_options=WriteOptions(include_header=False))
         else:
             from pyarrow.parquet import ParquetWriter  # noqa: PLC0415 - where it is used
 
             # Measured numbers hardly repeat: a dictionary of them takes longer than all the rest.
-            writer = ParquetWriter(stream, _SCHEMA, use_dictionary=["status"])
+            writer = ParquetWriter(stream, schema, use_dictionary=["status"])
 
         pending: list[pa.RecordBatch] = []
 
         def flush() -> None:
             # One write is one row group of Parquet: few large ones are read faster.
-            writer.write_table(pa.Table.from_batches(pending, _SCHEMA))
+            writer.write_table(pa.Table.from_batches(pending, schema))
             pending.clear()
 
         def write(
@@ -78,9 +82,9 @@ def result_file(
             columns += [cleaned.ripple_Nm, cleaned.status]
             arrays = [
                 to_arrow(field.type, values, gaps=is_csv)
-                for field, values in zip(_SCHEMA, columns, strict=True)
+                for field, values in zip(schema, columns, strict=True)
             ]
-            pending.append(pa.record_batch(arrays, schema=_SCHEMA))
+            pending.append(pa.record_batch(arrays, schema=schema))
             if sum(batch.num_rows for batch in pending) >= _ROWS_PER_WRITE:
                 flush()
 
