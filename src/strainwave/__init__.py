@@ -4,7 +4,7 @@ The arithmetic is the C++ core's, the same headers that run on a microcontroller
 drives it with arrays. Angles are mechanical and in rad, torque is in Nm on the output side.
 """
 
-from importlib.metadata import version
+from typing import TYPE_CHECKING
 
 from strainwave._core import (
     Amplifier,
@@ -41,7 +41,18 @@ from strainwave.filter import FilterResult, OscillatorFilter, oscillator_preset
 from strainwave.ripple_filter import RippleFilter, RippleResult
 from strainwave.sensor import SensorResult, TorqueSensor
 
-__version__ = version("strainwave")
+if TYPE_CHECKING:
+    __version__: str
+else:
+
+    def __getattr__(name: str) -> str:
+        if name != "__version__":
+            raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+        # Who does not ask for it does not wait for what reads it.
+        from importlib.metadata import version  # noqa: PLC0415
+
+        return version("strainwave")
+
 
 __all__ = [
     "Amplifier",

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import os
 import sys
-from importlib.metadata import version
 from typing import TYPE_CHECKING, Final
 
 import cyclopts
 
+import strainwave
 from strainwave.cli.calibrate import calibrate_app
 from strainwave.cli.calibrate_fluctuation import fluctuation
 from strainwave.cli.calibrate_misalignment import calibrate_misalignment
@@ -41,7 +41,7 @@ app = cyclopts.App(
     help="Clean joint torque from the strain gauges inside a strain wave gear.",
     help_format="markdown",
     default_parameter=cyclopts.Parameter(negative=()),
-    version=version("strainwave"),
+    version=lambda: strainwave.__version__,
 )
 # In the order of `--help`, which is that of the work: a look, filtering, building a sensor,
 # handing it over.

@@ -69,10 +69,8 @@ def filter_command(
     json : bool
         Print the result as JSON.
     """
-    from rich.progress import BarColumn, TaskProgressColumn, TextColumn, TimeElapsedColumn
-    from rich.progress import Progress as Bar
-
     from strainwave.cli.output import print_json, progress_console, result_console
+    from strainwave.cli.progress import progress_bar
     from strainwave.cli.repeat import LINE_AFTER_LINE, command_line
     from strainwave.cli.reporting import check_report
     from strainwave.records import Options, filter_log, parse_mapping, parse_ratio
@@ -87,21 +85,7 @@ def filter_command(
         absolute_angle=absolute_angle,
     )
     console = progress_console()
-    with Bar(
-        TextColumn("{task.description}"),
-        BarColumn(),
-        TaskProgressColumn(),
-        TimeElapsedColumn(),
-        console=console,
-        # Where nobody watches, a bar is noise.
-        disable=not console.is_terminal,
-        transient=True,
-    ) as bar:
-        task = bar.add_task("reading", total=1.0)
-
-        def progress(step: str, share: float) -> None:
-            bar.update(task, description=step, completed=share)
-
+    with progress_bar(console) as progress:
         evidence = None
         if report is None:
             result = filter_log(

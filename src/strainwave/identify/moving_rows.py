@@ -129,17 +129,18 @@ def turning_points(angle_rad: NDArray[np.float64], least_return_rad: float) -> l
     points = [0]
     highest = lowest = 0
     direction = 0
-    for row, angle in enumerate(angle_rad.tolist()):
-        if angle >= angle_rad[highest]:
+    angles = angle_rad.tolist()
+    for row, angle in enumerate(angles):
+        if angle >= angles[highest]:
             highest = row
-        if angle <= angle_rad[lowest]:
+        if angle <= angles[lowest]:
             lowest = row
-        if direction >= 0 and angle_rad[highest] - angle > least_return_rad:
+        if direction >= 0 and angles[highest] - angle > least_return_rad:
             if direction > 0:
                 points.append(highest)
             direction, lowest = -1, row
             highest = row
-        elif direction <= 0 and angle - angle_rad[lowest] > least_return_rad:
+        elif direction <= 0 and angle - angles[lowest] > least_return_rad:
             if direction < 0:
                 points.append(lowest)
             direction, highest = 1, row

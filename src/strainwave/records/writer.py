@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import contextlib
+import itertools
+import os
 from typing import TYPE_CHECKING, Any, Final
 
 import pyarrow as pa
 
 from strainwave.atomic import replaced_atomically
 from strainwave.records.arrow_arrays import to_arrow
+from strainwave.records.threads import done_behind
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -24,6 +27,9 @@ if TYPE_CHECKING:
 COLUMNS: Final = ("time_s", "torque_measured_Nm", "torque_Nm", "ripple_Nm", "status")
 _KINDS: Final = (*(pa.float64() for _ in COLUMNS[:-1]), pa.uint32())
 _ROWS_PER_WRITE = 1 << 17
+#: Writes after which the rows so far are sent to the disk, so that little is left to wait for at the
+#: end.
+_WRITES_PER_SYNC: Final = 8
 _CSV_HEADER = (",".join(COLUMNS) + "\n").encode()
 
 
@@ -54,7 +60,10 @@ def result_file(
     schema = pa.schema(
         [pa.field(name, kind, is_csv) for name, kind in zip(COLUMNS, _KINDS, strict=True)]
     )
-    with replaced_atomically(path) as stream:
+    with (
+        replaced_atomically(path) as stream,
+        done_behind(os.fdatasync, most_waiting=1) as send_to_disk,
+    ):
         writer: CSVWriter | ParquetWriter
         if is_csv:
             from pyarrow.csv import CSVWriter, WriteOptions  # noqa: PLC0415 - where it is used
@@ -69,11 +78,15 @@ def result_file(
             writer = ParquetWriter(stream, schema, use_dictionary=["status"])
 
         pending: list[pa.RecordBatch] = []
+        writes = itertools.count(1)
 
         def flush() -> None:
             # One write is one row group of Parquet: few large ones are read faster.
             writer.write_table(pa.Table.from_batches(pending, schema))
             pending.clear()
+            if next(writes) % _WRITES_PER_SYNC == 0:
+                stream.flush()
+                send_to_disk(stream.fileno())
 
         def write(
             time_s: NDArray[np.float64], measured_Nm: NDArray[np.float64], cleaned: Cleaned
