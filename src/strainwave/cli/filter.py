@@ -69,12 +69,14 @@ def filter_command(
     json : bool
         Print the result as JSON.
     """
+    from strainwave.cli.memory import keep_freed_memory
     from strainwave.cli.output import print_json, progress_console, result_console
     from strainwave.cli.progress import progress_bar
     from strainwave.cli.repeat import LINE_AFTER_LINE, command_line
     from strainwave.cli.reporting import check_report
     from strainwave.records import Options, filter_log, parse_mapping, parse_ratio
 
+    keep_freed_memory()
     check_report(report, out, log, joint)
     options = Options(
         mapping=parse_mapping(map_),

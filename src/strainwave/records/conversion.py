@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
@@ -168,9 +168,7 @@ class Converter:
         return np.where(usable, log_time_s, np.nan), np.where(usable, known / per_second, np.nan)
 
 
-def _divided(
-    values: NDArray[np.int64] | NDArray[np.float64], divisor: float
-) -> NDArray[np.float64]:
+def _divided(values: NDArray[Any], divisor: float) -> NDArray[np.float64]:
     found = np.asarray(values, dtype=np.float64)
     return found if divisor == 1.0 else found / divisor
 

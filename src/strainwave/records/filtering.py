@@ -151,8 +151,8 @@ def filter_log(
         # With what was chosen: who builds it once more gets the same.
         watch.begin(survey.rows, name, replace(setting, ripple_settings=log.ripple_settings), build)
     gauge_watch = gauge_watch_of(layout, survey, found)
-    rows = sample_rows(recording, layout, found, survey, progress, gauge_watch)
     chunked = None if in_sequence or survey.rows < LEAST_ROWS else in_time_chunks(remover)
+    rows = sample_rows(recording, layout, found, survey, progress, gauge_watch)
     if chunked is None:
         log = _filter(log, InOrder(remover), rows, watch)
     else:
@@ -298,5 +298,4 @@ class _Tally:
 
 
 def _sums_of_squares(signals: Iterable[NDArray[np.float64]]) -> NDArray[np.float64]:
-    # Added one after the other, as the core does.
-    return np.array([np.cumsum(signal**2)[-1] if len(signal) else 0.0 for signal in signals])
+    return np.array([np.sum(np.square(signal)) for signal in signals])

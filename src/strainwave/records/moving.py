@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
@@ -179,7 +179,7 @@ class MovingTally:
         if len(held) == len(value):
             self._since.add(value_steps, torque_steps)
             return
-        ends = slice(None) if not len(held) else np.flatnonzero(changed)
+        ends: Any = np.flatnonzero(changed) if len(held) else slice(None)
         travels = value_steps[ends]
         if self._wrapped:
             travels = travels - _TURN_RAD * np.rint(travels / _TURN_RAD)

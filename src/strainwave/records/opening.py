@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Final
 
 from strainwave.errors import InputError
-from strainwave.records.kept import KeptRecording
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -42,12 +41,14 @@ def open_recording(path: Path) -> Recording:
     # Each kind loads its reader: who reads Parquet does not wait for that of text.
     if ending in CSV_ENDINGS:
         from strainwave.records.csv_reader import CsvRecording  # noqa: PLC0415
+        from strainwave.records.kept import KeptRecording  # noqa: PLC0415
 
+        # Text takes longer to read than Parquet does twice.
         return KeptRecording(CsvRecording(path))
     if ending in PARQUET_ENDINGS:
         from strainwave.records.parquet_reader import ParquetRecording  # noqa: PLC0415
 
-        return KeptRecording(ParquetRecording(path))
+        return ParquetRecording(path)
     raise InputError(
         f"{path}: the name ends in {path.suffix!r}; expected "
         f"{', '.join((*CSV_ENDINGS, *PARQUET_ENDINGS))}, so convert the recording or rename it"
