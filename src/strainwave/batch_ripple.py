@@ -160,8 +160,8 @@ class RippleBatch:
         given = self._batch.innovations(
             rows, bool(angle_referenced), _level(level), _threads(threads)
         )
-        innovation, variance, status = ([each[part] for each in given] for part in range(3))
-        return BatchInnovations(innovation, variance, status)
+        found: list[list[Any]] = [[each[part] for each in given] for part in range(3)]
+        return BatchInnovations(*found)
 
     def _rows(
         self,

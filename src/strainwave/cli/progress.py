@@ -32,13 +32,13 @@ def progress_bar(console: Console) -> Iterator[Progress]:
         yield lambda _step, _share, /: None
         return
     # Who draws no bar does not wait for the library.
-    from rich.progress import (  # noqa: PLC0415
+    from rich.progress import (
         BarColumn,
         TaskProgressColumn,
         TextColumn,
         TimeElapsedColumn,
     )
-    from rich.progress import Progress as Bar  # noqa: PLC0415
+    from rich.progress import Progress as Bar
 
     columns = (TextColumn("{task.description}"), BarColumn(), TaskProgressColumn())
     with Bar(*columns, TimeElapsedColumn(), console=console, transient=True) as bar:

@@ -11,6 +11,7 @@ other, so that only the rows after reversals tell whether the ripple differs by 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import islice
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import numpy as np
@@ -167,13 +168,13 @@ class _Search:
             for terms in all_terms
             for memory_turns in memories_turns
         ]
-        found = iter(innovations_of_all(self._excerpt, configs))
+        found = innovations_of_all(self._excerpt, configs)
+        each_run = (
+            _Run(config.memory_turns, each.rows, each.likelihoods())
+            for config, each in zip(configs, found, strict=True)
+        )
         for terms in all_terms:
-            runs = []
-            for memory_turns in memories_turns:
-                each = next(found)
-                runs.append(_Run(memory_turns, each.rows, each.likelihoods()))
-            yield terms, runs
+            yield terms, list(islice(each_run, len(memories_turns)))
 
     def cost(self, terms: Terms, rows: int) -> float:
         """Give what the terms have to gain per row."""

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from strainwave.units import conversion
 from strainwave.records.mapping import gauge_key, is_gauge_key, quantity_of
+from strainwave.units import conversion
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

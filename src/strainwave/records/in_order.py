@@ -121,4 +121,3 @@ class InOrder:
         if len(merged):
             self._last = (float(merged.torque_Nm[-1]), float(merged.ripple_Nm[-1]))
         return merged
-

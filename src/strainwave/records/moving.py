@@ -185,10 +185,7 @@ class MovingTally:
             travels = travels - _TURN_RAD * np.rint(travels / _TURN_RAD)
         times = steps(time_s[ends], self._last_change[0])
         np.maximum(times, _SHORTEST_S, out=times)
-        if self._is_speed:
-            speeds = np.abs(value) * self._gain
-        else:
-            speeds = self._speeds_of(travels, times)
+        speeds = np.abs(value) * self._gain if self._is_speed else self._speeds_of(travels, times)
         moving = speeds > MOVING_RAD_S
         self._moving += int(np.count_nonzero(moving))
         at_rest = torque_steps[ends][~moving]

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from strainwave.errors import InputError
-from strainwave.units import conversion
 from strainwave.records.columns import find_columns
 from strainwave.records.mapping import parse_columns
 from strainwave.records.opening import open_recording
+from strainwave.units import conversion
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable
@@ -19,10 +19,10 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from strainwave.units import Quantity
     from strainwave.records.columns import FoundColumn
     from strainwave.records.mapping import MapKeys, MappedColumn
     from strainwave.records.raw import RawChunk, Recording
+    from strainwave.units import Quantity
 
     CodesToVolts = Callable[[NDArray[np.float64]], NDArray[np.float64]]
 
