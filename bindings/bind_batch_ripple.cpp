@@ -235,6 +235,7 @@ void bind_precision(nb::module_& m, const char* name) {
 
 void bind_batch_ripple(nb::module_& m) {
   m.attr("MOST_LANE_PAIRS") = batch_pairs;
+  m.attr("SLOWNESS_OF_FURTHER_PAIRS") = strainwave::detail::slowness_of_further_pairs;
   bind_precision<double>(m, "RippleBatchFloat64");
   bind_precision<float>(m, "RippleBatchFloat32");
 }

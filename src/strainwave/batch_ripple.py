@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 
 #: State differences are held to so many times the tolerance of the ripple.
 STATE_TOLERANCE_RATIO = 100.0
+#: Memories by which a chunk of a long log begins early, where no other number is asked for.
+WARM_UP_MEMORIES = 16.0
 
 
 @dataclass(frozen=True)
@@ -225,7 +227,7 @@ class LongRippleFilter:
         threads: int = 1,
         level: _core.VectorLevel | None = None,
         in_sequence: bool = False,
-        warm_up_memories: float = 16.0,
+        warm_up_memories: float = WARM_UP_MEMORIES,
         tolerance_Nm: float = 1e-4,
     ) -> None:
         self._dtype: type[Any] = precision(dtype)
@@ -289,7 +291,7 @@ def filter_ripple_long(
     threads: int = 1,
     level: _core.VectorLevel | None = None,
     in_sequence: bool = False,
-    warm_up_memories: float = 16.0,
+    warm_up_memories: float = WARM_UP_MEMORIES,
     tolerance_Nm: float = 1e-4,
 ) -> LongResult:
     """Remove the ripple from one long log in time chunks, each warmed up on the samples before.
@@ -349,6 +351,24 @@ def filter_ripple_long(
         expected_torque_Nm=expected_torque_Nm,
         angle_referenced=angle_referenced,
     )
+
+
+def warm_up_turns(config: _core.RippleFilterConfig) -> float:
+    """Tell by how many motor turns a chunk of a long log begins early.
+
+    Parameters
+    ----------
+    config : RippleFilterConfig
+        The filter's configuration.
+
+    Returns
+    -------
+    float
+        `WARM_UP_MEMORIES`, and more where orders depend on load, speed or direction.
+    """
+    has_further = pairs_of(config) > len(config.orders)
+    slowness = _core.SLOWNESS_OF_FURTHER_PAIRS if has_further else 1.0
+    return WARM_UP_MEMORIES * slowness * config.memory_turns
 
 
 def pairs_of(config: _core.RippleFilterConfig) -> int:

@@ -167,8 +167,9 @@ def _summary(result: FilteredLog) -> list[str]:
     chunks = result.time_chunks
     if chunks is not None:
         lines.append(
-            f"  in {chunks.count} time chunks, of which {chunks.repeated} again in sequence: at most "
-            f"{chunks.largest_difference_Nm:.1g} Nm from sequence (--in-sequence)"
+            f"  in {chunks.count} time chunks ({chunks.repeated} filtered again): where they meet, "
+            f"{chunks.rms_difference_Nm:.2g} Nm rms from --in-sequence, at most "
+            f"{chunks.largest_difference_Nm:.2g} Nm"
         )
     if result.gauges is not None:
         lines.append(f"  gauges watched: {_gauges(result.gauges)}")

@@ -1,19 +1,19 @@
-"""Methods for a long recording: pieces of it in time chunks, on vector lanes and threads.
+"""Methods for a long recording: pieces of it in time chunks, side by side on vector lanes.
 
-Each chunk is warmed up on the rows before it and held against where the chunk before ended; one
-that differs too much is filtered again in sequence (docs/design/batch.md). The state goes on from
-piece to piece.
+One thread: those that read and write have the other cores. Each chunk is warmed up on the rows
+before it and held against where the chunk before ended; one that differs too much is filtered again
+in sequence (docs/design/batch.md). The state goes on from piece to piece.
 """
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING
 
 from strainwave import _core
 from strainwave.batch import LongOscillatorFilter
-from strainwave.batch_ripple import LongRippleFilter, pairs_of
+from strainwave.batch_ripple import LongRippleFilter, pairs_of, warm_up_turns
 from strainwave.methods.interface import Cleaned, nothing
 from strainwave.methods.motion import BackwardDifference
 from strainwave.methods.published import Published
@@ -26,13 +26,10 @@ if TYPE_CHECKING:
     from strainwave.methods.interface import Method
     from strainwave.samples import Samples
 
-#: Fixed, so that a result does not depend on how many cores a computer has.
-_THREADS: Final = 2
-
 
 @dataclass(frozen=True)
 class TimeChunks:
-    """How a recording was cut, and how far the result is from one in sequence.
+    """How a recording was cut, and how far its chunks are from sequence where they meet.
 
     Attributes
     ----------
@@ -90,11 +87,14 @@ class InTimeChunks:
     ----------
     run : callable
         Filters the next piece.
+    warm_up_turns : float
+        Motor turns by which a chunk begins early; 0 where that is not a matter of turns.
     """
 
-    def __init__(self, run: Callable[[Samples], LongResult]) -> None:
+    def __init__(self, run: Callable[[Samples], LongResult], warm_up_turns: float) -> None:
         self._run = run
         self._tally = _Tally()
+        self.warm_up_turns = warm_up_turns
 
     @property
     def time_chunks(self) -> TimeChunks:
@@ -141,16 +141,14 @@ def in_time_chunks(method: Method) -> InTimeChunks | None:
         One that starts as the given one would; None where the method has to go in sequence.
     """
     if isinstance(method, Ripple) and pairs_of(method.filter.config) <= _core.MOST_LANE_PAIRS:
-        return InTimeChunks(_ripple(method))
+        return InTimeChunks(_ripple(method), warm_up_turns(method.filter.config))
     if isinstance(method, Published) and method.turns_by_speed:
-        return InTimeChunks(_published(method))
+        return InTimeChunks(_published(method), 0.0)
     return None
 
 
 def _ripple(method: Ripple) -> Callable[[Samples], LongResult]:
-    long_filter = LongRippleFilter(
-        method.filter.config, learned=method.learned_before, threads=_THREADS
-    )
+    long_filter = LongRippleFilter(method.filter.config, learned=method.learned_before)
 
     def run(samples: Samples) -> LongResult:
         return long_filter.process(
@@ -164,7 +162,7 @@ def _ripple(method: Ripple) -> Callable[[Samples], LongResult]:
 
 
 def _published(method: Published) -> Callable[[Samples], LongResult]:
-    long_filter = LongOscillatorFilter(method.config, threads=_THREADS)
+    long_filter = LongOscillatorFilter(method.config)
     motion = BackwardDifference()
 
     def run(samples: Samples) -> LongResult:

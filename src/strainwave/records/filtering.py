@@ -17,7 +17,6 @@ from strainwave.errors import InputError
 from strainwave.fidelity.warning import fidelity_warnings
 from strainwave.methods.interface import Cleaned, together
 from strainwave.methods.registry import METHOD_NAMES, Setting, build_method
-from strainwave.methods.time_chunks import in_time_chunks
 from strainwave.records.checks import check_method, check_output, check_survey
 from strainwave.records.columns import find_columns
 from strainwave.records.filtered_log import FilteredLog
@@ -37,7 +36,7 @@ from strainwave.records.misalignment import misalignment_as_read
 from strainwave.records.opening import open_recording
 from strainwave.records.options import Options
 from strainwave.records.passes import Progress, sample_rows, survey_recording, untold
-from strainwave.records.pieces import LEAST_ROWS, in_pieces
+from strainwave.records.pieces import in_pieces, long_run
 from strainwave.records.survey import estimated_rated_torque_Nm
 from strainwave.records.threads import MOST_WAITING, done_behind
 from strainwave.records.writer import result_file
@@ -151,15 +150,16 @@ def filter_log(
         # With what was chosen: who builds it once more gets the same.
         watch.begin(survey.rows, name, replace(setting, ripple_settings=log.ripple_settings), build)
     gauge_watch = gauge_watch_of(layout, survey, found)
-    chunked = None if in_sequence or survey.rows < LEAST_ROWS else in_time_chunks(remover)
     rows = sample_rows(recording, layout, found, survey, progress, gauge_watch)
-    if chunked is None:
+    long = None if in_sequence else long_run(remover, survey)
+    if long is None:
         log = _filter(log, InOrder(remover), rows, watch)
     else:
-        log = _filter(log, InOrder(chunked), in_pieces(rows), watch, most_waiting=1)
+        pieces = in_pieces(rows, long.piece_rows)
+        log = _filter(log, InOrder(long.method), pieces, watch, most_waiting=1)
     return replace(
         log,
-        time_chunks=None if chunked is None else chunked.time_chunks,
+        time_chunks=None if long is None else long.method.time_chunks,
         gauges=None if gauge_watch is None else gauge_watch.result(),
         warnings=(*log.warnings, *gauge_sentences(layout, found, gauge_watch)),
     )

@@ -130,10 +130,7 @@ class MovingTally:
             return
         torque_steps = steps(torque_Nm, last_torque_Nm)
         # A mapped speed says for every row by itself how fast the motor is.
-        if self._is_speed:
-            changed = np.ones(len(value), np.bool_)
-        else:
-            changed = value_steps != 0.0
+        changed = np.ones(len(value), np.bool_) if self._is_speed else value_steps != 0.0
         self._count(time_s, value, value_steps, torque_steps, changed)
         self._last_row = (float(time_s[-1]), float(value[-1]), float(torque_Nm[-1]))
 
