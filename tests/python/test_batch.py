@@ -9,7 +9,12 @@ import pytest
 
 from strainwave import InputError, OscillatorFilter, OscillatorFilterConfig, oscillator_preset
 from strainwave._core import VectorLevel
-from strainwave.batch import OscillatorBatch, available_vector_levels, filter_long
+from strainwave.batch import (
+    LongOscillatorFilter,
+    OscillatorBatch,
+    available_vector_levels,
+    filter_long,
+)
 
 PRECISIONS = [(np.float64, 1e-9), (np.float32, 1e-3)]
 
@@ -112,6 +117,24 @@ def test_long_log_is_the_sequence_within_a_tenth_of_a_millinewtonmetre(dtype):
     assert chunked.report.rms_ripple_difference_Nm < 1e-4
     assert chunked.counters["samples"] == counters["samples"]
     assert chunked.counters["faults"] == counters["faults"]
+
+
+def test_pieces_of_a_long_log_go_on():
+    config = OscillatorFilterConfig(orders=[2, 4, Fraction(1, 20)], process_noise_variance_Nm2=1e-4)
+    torque, speed = recording(4, 300_000, np.float64)
+    sequence, _ = alone(config, torque, speed, np.float64)
+    exact = LongOscillatorFilter(config, in_sequence=True)
+    chunks = LongOscillatorFilter(config, threads=2)
+    for start in range(0, 300_000, 100_000):
+        rows = slice(start, start + 100_000)
+        piece = {"torque_Nm": torque[rows], "motor_speed_rad_s": speed[rows]}
+        np.testing.assert_array_equal(exact.process(**piece).torque_Nm, sequence.torque_Nm[rows])
+        found = chunks.process(**piece, ripple=True, status=True)
+        error_Nm = found.torque_Nm - sequence.torque_Nm[rows]
+        assert 0.0 < np.sqrt(np.mean(error_Nm**2)) < 1e-4
+        np.testing.assert_array_equal(found.status, sequence.status[rows])
+        assert found.report.chunk_count > 1
+        assert found.counters["samples"] == rows.stop
 
 
 def test_too_short_a_warm_up_is_found_and_repeated():

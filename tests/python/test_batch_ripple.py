@@ -9,7 +9,7 @@ import pytest
 
 from strainwave import RippleFilter, RippleFilterConfig
 from strainwave.batch import available_vector_levels
-from strainwave.batch_ripple import RippleBatch, filter_ripple_long
+from strainwave.batch_ripple import LongRippleFilter, RippleBatch, filter_ripple_long
 from strainwave.errors import InputError
 
 
@@ -85,6 +85,60 @@ def test_a_short_warm_up_is_found_out_and_repeated() -> None:
     chunks = filter_ripple_long(config_of(2), *log, warm_up_memories=0.2)
     assert chunks.report.repeated_chunks > 0
     np.testing.assert_allclose(chunks.torque_Nm, sequence.torque_Nm, atol=1e-3)
+
+
+@pytest.mark.parametrize("level", available_vector_levels())
+def test_innovations_are_those_of_one_filter(level: Any) -> None:
+    log = log_of(4, 2000)
+    configs = [config_of(number) for number in (0, 2, 4, 5)]
+    found = RippleBatch(configs).innovations(
+        *([column] * 4 for column in log), threads=2, level=level
+    )
+    for number, config in enumerate(configs):
+        alone = RippleFilter(config).process(*log)
+        np.testing.assert_allclose(found.innovation_Nm[number], alone.innovation_Nm, atol=1e-8)
+        variance_Nm2 = found.innovation_variance_Nm2[number]
+        np.testing.assert_allclose(variance_Nm2, alone.innovation_variance_Nm2, rtol=1e-7)
+        np.testing.assert_array_equal(found.status[number], alone.status)
+        # The torque that is missing was not learned from.
+        assert np.count_nonzero(variance_Nm2[100:] == 0) >= 1
+
+
+def test_learned_coefficients_are_started_with() -> None:
+    log = log_of(1, 3000)
+    before = RippleFilter(config_of(1))
+    before.process(*log)
+    learned = before.learned()
+    expected = RippleFilter(config_of(1), learned=learned).process(*log)
+    untaught = RippleFilter(config_of(1)).process(*log)
+    batch = RippleBatch([config_of(1)], learned=[learned])
+    for _ in range(2):
+        found = batch.process(*([column] for column in log))
+        np.testing.assert_allclose(found.torque_Nm[0], expected.torque_Nm, atol=1e-8)
+        assert np.max(np.abs(found.torque_Nm[0][:50] - untaught.torque_Nm[:50])) > 0.1
+        batch.reset()
+    long_filter = LongRippleFilter(config_of(1), learned=learned)
+    np.testing.assert_array_equal(long_filter.process(*log).torque_Nm, expected.torque_Nm)
+    with pytest.raises(InputError, match="learned"):
+        RippleBatch([config_of(1), config_of(3)], learned=[learned])
+    with pytest.raises(InputError, match="orders"):
+        RippleBatch([config_of(0)], learned=[learned])
+
+
+def test_pieces_of_a_long_log_go_on() -> None:
+    log = log_of(1, 150_000)
+    expected = RippleFilter(config_of(1)).process(*log)
+    exact = LongRippleFilter(config_of(1), in_sequence=True)
+    chunks = LongRippleFilter(config_of(1), threads=2)
+    for start in range(0, 150_000, 50_000):
+        rows = slice(start, start + 50_000)
+        piece = [column[rows] for column in log]
+        in_sequence, in_chunks = exact.process(*piece), chunks.process(*piece)
+        np.testing.assert_array_equal(in_sequence.torque_Nm, expected.torque_Nm[rows])
+        difference_Nm = in_chunks.torque_Nm - expected.torque_Nm[rows]
+        assert 0.0 < np.sqrt(np.mean(difference_Nm**2)) < 1e-4
+        assert in_chunks.report.chunk_count > 1
+        assert in_chunks.counters["samples"] == in_sequence.counters["samples"] == rows.stop
 
 
 def test_wrong_channels_are_refused() -> None:
