@@ -8,6 +8,7 @@ from typing import Final
 #: Parameters of the C library's mallopt().
 _TRIM_THRESHOLD: Final = -1
 _MMAP_THRESHOLD: Final = -3
+_ARENA_MAX: Final = -8
 _NEVER_BYTES: Final = 1 << 30
 
 
@@ -21,3 +22,5 @@ def keep_freed_memory() -> None:
     if mallopt is not None:
         mallopt(_MMAP_THRESHOLD, _NEVER_BYTES)
         mallopt(_TRIM_THRESHOLD, _NEVER_BYTES)
+        # One thread's arrays are freed in another.
+        mallopt(_ARENA_MAX, 1)
