@@ -24,7 +24,7 @@ using namespace nb::literals;
 namespace {
 
 /// Pairs that a batch has room for: those that run on lanes.
-inline constexpr std::size_t batch_pairs = strainwave::detail::most_lane_pairs;
+inline constexpr std::size_t batch_pairs = most_lane_pairs;
 
 /// Results of one channel: two of the outputs, and the status.
 template <class Real>

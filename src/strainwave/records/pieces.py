@@ -19,14 +19,14 @@ if TYPE_CHECKING:
 
 #: A shorter recording is filtered in sequence: nobody would notice what time chunks save.
 LEAST_ROWS: Final = 1 << 19
-#: Short pieces where all lanes find room in them for their warm-ups, else long ones. Those that are
-#: there at a time take less than a gigabyte.
+#: Short pieces where warm-ups are short, else long ones; those that are there at a time take less
+#: than a gigabyte.
 SHORT_PIECE_ROWS: Final = 1 << 20
 LONG_PIECE_ROWS: Final = 1 << 21
-#: Warm-ups that a piece has room for where all lanes are filled, and where chunks are still quicker
-#: than sequence.
-_WARM_UPS_OF_ALL_LANES: Final = 64
-_LEAST_WARM_UPS: Final = 8
+#: Warm-ups that would fit into a piece where they hardly cost anything, and where chunks are still
+#: twice as quick as sequence.
+_MANY_WARM_UPS: Final = 64
+_LEAST_WARM_UPS: Final = 4
 
 
 class LongRun(NamedTuple):
@@ -67,7 +67,7 @@ def long_run(method: Method, survey: Survey) -> LongRun | None:
         return LongRun(chunked, SHORT_PIECE_ROWS)
     speed_rad_s = (survey.moving.typical_speed_rad_s or 0.0) * (1.0 - survey.share_at_rest)
     turns_per_piece = SHORT_PIECE_ROWS * survey.sample_period_s * speed_rad_s / (2.0 * math.pi)
-    if turns_per_piece >= _WARM_UPS_OF_ALL_LANES * chunked.warm_up_turns:
+    if turns_per_piece >= _MANY_WARM_UPS * chunked.warm_up_turns:
         return LongRun(chunked, SHORT_PIECE_ROWS)
     turns_per_piece *= LONG_PIECE_ROWS / SHORT_PIECE_ROWS
     if turns_per_piece >= _LEAST_WARM_UPS * chunked.warm_up_turns:
