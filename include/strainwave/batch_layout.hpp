@@ -7,9 +7,16 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 
 #include "strainwave/lanes.hpp"
 #include "strainwave/status.hpp"
+
+#if STRAINWAVE_HAS_LANES
+#define STRAINWAVE_LEVEL_FILE "strainwave/batch_layout_level.hpp"
+#include "strainwave/lanes_each_level.hpp"
+#undef STRAINWAVE_LEVEL_FILE
+#endif
 
 namespace strainwave {
 
@@ -41,107 +48,55 @@ struct Ahead {
 
 namespace detail {
 
-#if STRAINWAVE_HAS_LANES
-
-/// Squares of 16-byte rows: 4 x 4 floats or 2 x 2 doubles.
+/// The part of a tile that whole squares cover, from one array a channel; returns its samples, 0
+/// where the level has no squares.
 template <class Real>
-struct Square {
-  using Row [[gnu::vector_size(16)]] = Real;
-  static constexpr std::size_t side = 16 / sizeof(Real);
-
-  Row rows[side];
-
-  void load_row(std::size_t i, const Real* from) { __builtin_memcpy(&rows[i], from, 16); }
-  void store_row(std::size_t i, Real* to) const { __builtin_memcpy(to, &rows[i], 16); }
-
-  void transpose() {
-    if constexpr (side == 4) {
-      const Row low01 = __builtin_shufflevector(rows[0], rows[1], 0, 4, 1, 5);
-      const Row high01 = __builtin_shufflevector(rows[0], rows[1], 2, 6, 3, 7);
-      const Row low23 = __builtin_shufflevector(rows[2], rows[3], 0, 4, 1, 5);
-      const Row high23 = __builtin_shufflevector(rows[2], rows[3], 2, 6, 3, 7);
-      rows[0] = __builtin_shufflevector(low01, low23, 0, 1, 4, 5);
-      rows[1] = __builtin_shufflevector(low01, low23, 2, 3, 6, 7);
-      rows[2] = __builtin_shufflevector(high01, high23, 0, 1, 4, 5);
-      rows[3] = __builtin_shufflevector(high01, high23, 2, 3, 6, 7);
-    } else {
-      const Row first = rows[0];
-      rows[0] = __builtin_shufflevector(first, rows[1], 0, 2);
-      rows[1] = __builtin_shufflevector(first, rows[1], 1, 3);
-    }
-  }
-};
-
-/// The part of a tile that whole squares cover, from one array a channel; returns its samples.
-template <class Real>
-inline std::size_t gather_squares(const Real* const* rows, std::size_t at, std::size_t count,
-                                  Real* tile) {
-  constexpr std::size_t width = block_width<Real>;
-  constexpr std::size_t side = Square<Real>::side;
-  Square<Real> square = {};
-  for (std::size_t lane = 0; lane < width; lane += side) {
-    for (std::size_t k = 0; k + side <= count; k += side) {
-      for (std::size_t i = 0; i < side; ++i) {
-        square.load_row(i, rows[lane + i] + at + k);
-      }
-      square.transpose();
-      for (std::size_t i = 0; i < side; ++i) {
-        square.store_row(i, tile + (k + i) * width + lane);
-      }
-    }
-  }
-  return count / side * side;
-}
-
-/// The way back, for the channels from `lane` on that share a square; returns its samples, 0 where
-/// one of the channels is not wanted.
-template <class Real>
-inline std::size_t scatter_squares(const Real* tile, std::size_t count, Real* const* rows,
-                                   std::size_t lane, std::size_t at) {
-  constexpr std::size_t side = Square<Real>::side;
-  for (std::size_t i = 0; i < side; ++i) {
-    if (rows[lane + i] == nullptr) {
-      return 0;
-    }
-  }
-  Square<Real> square = {};
-  for (std::size_t k = 0; k + side <= count; k += side) {
-    for (std::size_t i = 0; i < side; ++i) {
-      square.load_row(i, tile + (k + i) * block_width<Real> + lane);
-    }
-    square.transpose();
-    for (std::size_t i = 0; i < side; ++i) {
-      square.store_row(i, rows[lane + i] + at + k);
-    }
-  }
-  return count / side * side;
-}
-
-#else
-
-template <class Real>
-struct Square {
-  static constexpr std::size_t side = 1;
-};
-template <class Real>
-inline std::size_t gather_squares(const Real* const* /*rows*/, std::size_t /*at*/,
-                                  std::size_t /*count*/, Real* /*tile*/) {
-  return 0;
-}
-template <class Real>
-inline std::size_t scatter_squares(const Real* /*tile*/, std::size_t /*count*/,
-                                   Real* const* /*rows*/, std::size_t /*lane*/,
-                                   std::size_t /*at*/) {
-  return 0;
-}
-
+inline std::size_t gather_squares(VectorLevel level, const Real* const* rows, std::size_t at,
+                                  std::size_t count, Real* tile) {
+  switch (level) {
+#if STRAINWAVE_HAS_X86_LEVELS
+    case VectorLevel::x86_64_v2:
+      return level_v2::gather_squares<Real>(rows, at, count, tile);
+    case VectorLevel::x86_64_v3:
+      return level_v3::gather_squares<Real>(rows, at, count, tile);
+    case VectorLevel::x86_64_v4:
+      return level_v4::gather_squares<Real>(rows, at, count, tile);
+#elif STRAINWAVE_HAS_LANES
+    case VectorLevel::portable:
+      return level_portable::gather_squares<Real>(rows, at, count, tile);
 #endif
+    default:
+      return 0;
+  }
+}
+
+/// The way back; a null row is not wanted.
+template <class Real>
+inline std::size_t scatter_squares(VectorLevel level, const Real* tile, std::size_t count,
+                                   Real* const* rows, std::size_t at) {
+  switch (level) {
+#if STRAINWAVE_HAS_X86_LEVELS
+    case VectorLevel::x86_64_v2:
+      return level_v2::scatter_squares<Real>(tile, count, rows, at);
+    case VectorLevel::x86_64_v3:
+      return level_v3::scatter_squares<Real>(tile, count, rows, at);
+    case VectorLevel::x86_64_v4:
+      return level_v4::scatter_squares<Real>(tile, count, rows, at);
+#elif STRAINWAVE_HAS_LANES
+    case VectorLevel::portable:
+      return level_portable::scatter_squares<Real>(tile, count, rows, at);
+#endif
+    default:
+      return 0;
+  }
+}
 
 /// Samples [at, at + count) of a block's channels into a tile.  Rows may repeat.
 template <class Real>
-inline void gather(const Real* const* rows, std::size_t at, std::size_t count, Real* tile) {
+inline void gather(const Real* const* rows, std::size_t at, std::size_t count, Real* tile,
+                   VectorLevel level = best_vector_level()) {
   constexpr std::size_t width = block_width<Real>;
-  for (std::size_t k = gather_squares(rows, at, count, tile); k < count; ++k) {
+  for (std::size_t k = gather_squares(level, rows, at, count, tile); k < count; ++k) {
     for (std::size_t lane = 0; lane < width; ++lane) {
       tile[k * width + lane] = rows[lane][at + k];
     }
@@ -150,13 +105,13 @@ inline void gather(const Real* const* rows, std::size_t at, std::size_t count, R
 
 /// A tile's samples into [at, at + count) of a block's channels; a null row is not wanted.
 template <class Real>
-inline void scatter(const Real* tile, std::size_t count, Real* const* rows, std::size_t at) {
+inline void scatter(const Real* tile, std::size_t count, Real* const* rows, std::size_t at,
+                    VectorLevel level = best_vector_level()) {
   constexpr std::size_t width = block_width<Real>;
-  for (std::size_t lane = 0; lane < width; lane += Square<Real>::side) {
-    const std::size_t done = scatter_squares(tile, count, rows, lane, at);
-    for (std::size_t i = lane; i < lane + Square<Real>::side; ++i) {
-      for (std::size_t k = done; k < count && rows[i] != nullptr; ++k) {
-        rows[i][at + k] = tile[k * width + i];
+  for (std::size_t k = scatter_squares(level, tile, count, rows, at); k < count; ++k) {
+    for (std::size_t lane = 0; lane < width; ++lane) {
+      if (rows[lane] != nullptr) {
+        rows[lane][at + k] = tile[k * width + lane];
       }
     }
   }

@@ -150,8 +150,9 @@ class OscillatorBlockRun {
  public:
   static constexpr std::size_t width = block_width<Real>;
 
-  OscillatorBlockRun(const OscillatorBlock<Real, MaxOrders>& block, TileKernel<Real, Orders> kernel)
-      : block_(&block), kernel_(kernel) {
+  OscillatorBlockRun(const OscillatorBlock<Real, MaxOrders>& block, VectorLevel level,
+                     TileKernel<Real, Orders> kernel)
+      : block_(&block), level_(level), kernel_(kernel) {
     std::size_t known = 0;
     while (block.configs[known] == nullptr) {
       ++known;
@@ -216,8 +217,8 @@ class OscillatorBlockRun {
   }
 
   void gather_tile(std::size_t at, std::size_t count) {
-    gather(rows_.measured, at, count, measured_.values);
-    gather(rows_.speed, at, count, speed_.values);
+    gather(rows_.measured, at, count, measured_.values, level_);
+    gather(rows_.speed, at, count, speed_.values, level_);
     if (has_expected_) {
       gather_expected(at, count);
     }
@@ -256,10 +257,10 @@ class OscillatorBlockRun {
 
   void scatter_tile(std::size_t at, std::size_t count) {
     if (has_torque_) {
-      scatter(torque_.values, count, rows_.torque, at);
+      scatter(torque_.values, count, rows_.torque, at, level_);
     }
     if (has_ripple_) {
-      scatter(ripple_.values, count, rows_.ripple, at);
+      scatter(ripple_.values, count, rows_.ripple, at, level_);
     }
     for (std::size_t lane = 0; lane < width && has_status_; ++lane) {
       if (is_live(lane, at) && block_->channels[lane].status != nullptr) {
@@ -295,6 +296,7 @@ class OscillatorBlockRun {
   };
 
   const OscillatorBlock<Real, MaxOrders>* block_;
+  VectorLevel level_;
   TileKernel<Real, Orders> kernel_;
   OscillatorLanes<Real, Orders> lanes_ = {};
   OscillatorTile<Real> tile_ = {};
@@ -323,7 +325,7 @@ inline void filter_block(OscillatorKind kind, VectorLevel level,
     with_kernel<Real>(kind, level, [&]<std::size_t Orders>(TileKernel<Real, Orders> kernel) {
       if (kernel != nullptr) {
         // 30 KB: not every thread's stack has room for it.
-        std::make_unique<OscillatorBlockRun<Real, Orders, MaxOrders>>(block, kernel)->run();
+        std::make_unique<OscillatorBlockRun<Real, Orders, MaxOrders>>(block, level, kernel)->run();
         is_done = true;
       }
     });
