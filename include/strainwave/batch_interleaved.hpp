@@ -26,9 +26,6 @@ struct InterleavedRecording {
 
 namespace detail {
 
-/// Samples after which counts are taken out of the lanes: they are exact in float up to 2^24.
-inline constexpr std::size_t counted_samples = std::size_t{1} << 20U;
-
 /// The kind of kernel that does for all channels; none where one of them has none.
 template <class Real, std::size_t MaxOrders>
 [[nodiscard]] inline OscillatorKind common_kind(
@@ -59,7 +56,6 @@ inline void filter_interleaved(std::span<const OscillatorFilterConfig<Real, MaxO
     put_config(*lanes, lane, configs[like]);
     put_state(*lanes, lane, configs[like], states[like]);
   }
-  alignas(64) Real unwanted[width];
   for (std::size_t at = 0; at < part.sample_count; at += counted_samples) {
     const std::size_t from = at * width;
     const bool has_expected = part.expected_torque_Nm != nullptr;
@@ -71,8 +67,7 @@ inline void filter_interleaved(std::span<const OscillatorFilterConfig<Real, MaxO
             .expected_torque_Nm = has_expected ? part.expected_torque_Nm + from : zero_row<Real>,
             .expected_stride = has_expected ? width : 0,
             .torque_Nm = part.torque_Nm + from,
-            .ripple_Nm = has_ripple ? part.ripple_Nm + from : unwanted,
-            .ripple_stride = has_ripple ? width : 0,
+            .ripple_Nm = has_ripple ? part.ripple_Nm + from : nullptr,
             .sample_count = count});
     for (std::size_t lane = 0; lane < configs.size(); ++lane) {
       take_counts(*lanes, lane, count, states[lane].counters);

@@ -36,12 +36,12 @@ struct Ahead {
   static constexpr std::size_t line = 64 / sizeof(Number);
 
   const Number* rows[block_width<Number>] = {};
-  bool is_on = false;
 
-  /// Asks for one line of a tile for each sample of the tile before it.
-  [[gnu::always_inline]] void ask(std::size_t sample) const {
+  /// Asks for one line of the tile that begins at `at`, for each sample of the tile before it.
+  [[gnu::always_inline]] void ask(std::size_t at, std::size_t sample) const {
 #if STRAINWAVE_HAS_LANES
-    __builtin_prefetch(rows[sample % block_width<Number>] + sample / block_width<Number> * line);
+    __builtin_prefetch(rows[sample % block_width<Number>] + at +
+                       sample / block_width<Number> * line);
 #endif
   }
 };

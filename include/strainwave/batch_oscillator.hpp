@@ -174,16 +174,13 @@ class OscillatorBlockRun {
 
   /// From the first sample to the last one of the longest channel.
   void run() {
-    std::size_t at = 0;
-    std::size_t count = next_count(at);
-    while (count > 0) {
-      gather_tile(at, count);
-      ask_ahead(at + count);
-      kernel_(lanes_, tile_);
-      scatter_tile(at, count);
-      at += count;
-      take_ended(at, count);
-      count = next_count(at);
+    for (std::size_t at = 0; begin_stretch(at); at += stretch_) {
+      for (std::size_t done = 0; done < stretch_; done += tile_.sample_count) {
+        gather_tile(at + done, stretch_ - done);
+        kernel_(lanes_, tile_);
+        scatter_tile(at + done, tile_.sample_count);
+      }
+      end_stretch(at, at + stretch_);
     }
   }
 
@@ -192,31 +189,41 @@ class OscillatorBlockRun {
     return block_->configs[lane] != nullptr && block_->channels[lane].sample_count > at;
   }
 
-  /// Samples up to where the next channel ends, a tile at most; 0 where all have ended.  Channels
-  /// that have ended read another one's samples and write none.
-  [[nodiscard]] std::size_t next_count(std::size_t at) {
+  /// Samples up to where the next channel ends; false where all have ended.  Channels that have
+  /// ended read another one's samples and write none.
+  [[nodiscard]] bool begin_stretch(std::size_t at) {
     std::size_t live = width;
-    left_ = 0;
+    stretch_ = counted_samples;
     for (std::size_t lane = 0; lane < width; ++lane) {
       if (is_live(lane, at)) {
         const std::size_t left = block_->channels[lane].sample_count - at;
-        left_ = live == width || left < left_ ? left : left_;
+        stretch_ = left < stretch_ ? left : stretch_;
         live = lane;
       }
     }
     for (std::size_t lane = 0; lane < width && live < width; ++lane) {
-      const bool own = is_live(lane, at);
-      const OscillatorChannel<Real>& from = block_->channels[own ? lane : live];
-      rows_.measured[lane] = from.measured_torque_Nm;
-      rows_.speed[lane] = from.motor_speed_rad_s;
-      rows_.expected[lane] = from.expected_torque_Nm;
-      rows_.torque[lane] = own ? rows_.torque[lane] : nullptr;
-      rows_.ripple[lane] = own ? rows_.ripple[lane] : nullptr;
+      take_rows(lane, is_live(lane, at), block_->channels[is_live(lane, at) ? lane : live]);
     }
-    return left_ < tile_samples ? left_ : tile_samples;
+    return live < width;
   }
 
-  void gather_tile(std::size_t at, std::size_t count) {
+  void take_rows(std::size_t lane, bool own, const OscillatorChannel<Real>& from) {
+    rows_.measured[lane] = from.measured_torque_Nm;
+    rows_.speed[lane] = from.motor_speed_rad_s;
+    rows_.expected[lane] = from.expected_torque_Nm;
+    rows_.torque[lane] = own ? rows_.torque[lane] : nullptr;
+    rows_.ripple[lane] = own ? rows_.ripple[lane] : nullptr;
+    const Real* const result =
+        rows_.torque[lane] != nullptr ? rows_.torque[lane] : rows_.ripple[lane];
+    ahead_[0].rows[lane] = from.measured_torque_Nm;
+    ahead_[1].rows[lane] = from.motor_speed_rad_s;
+    ahead_[2].rows[lane] = result != nullptr ? result : from.motor_speed_rad_s;
+  }
+
+  /// A tile of up to `left` samples.  The tile after the next one is asked for while this one is
+  /// computed: memory is that far away.
+  void gather_tile(std::size_t at, std::size_t left) {
+    const std::size_t count = left < tile_samples ? left : tile_samples;
     gather(rows_.measured, at, count, measured_.values, level_);
     gather(rows_.speed, at, count, speed_.values, level_);
     if (has_expected_) {
@@ -226,23 +233,12 @@ class OscillatorBlockRun {
              .motor_speed_rad_s = speed_.values,
              .expected_torque_Nm = has_expected_ ? expected_.values : zero_row<Real>,
              .expected_stride = has_expected_ ? width : 0,
-             .torque_Nm = torque_.values,
-             .ripple_Nm = ripple_.values,
-             .ripple_stride = has_ripple_ ? width : 0,
+             .torque_Nm = has_torque_ || !has_ripple_ ? torque_.values : nullptr,
+             .ripple_Nm = has_ripple_ ? ripple_.values : nullptr,
              .status = has_status_ ? status_.values : nullptr,
-             .sample_count = count};
-  }
-
-  /// The tile after the next one, while this one is computed: memory is that far away.
-  void ask_ahead(std::size_t next) {
-    tile_.ahead = left_ >= 3 * tile_samples ? ahead_ : nullptr;
-    for (std::size_t lane = 0; lane < width && tile_.ahead != nullptr; ++lane) {
-      const std::size_t at = next + tile_samples;
-      ahead_[0].rows[lane] = rows_.measured[lane] + at;
-      ahead_[1].rows[lane] = rows_.speed[lane] + at;
-      const bool is_wanted = rows_.torque[lane] != nullptr;
-      ahead_[2].rows[lane] = (is_wanted ? rows_.torque[lane] : rows_.speed[lane]) + at;
-    }
+             .sample_count = count,
+             .ahead = left >= 3 * tile_samples ? ahead_ : nullptr,
+             .ahead_at = at + 2 * tile_samples};
   }
 
   /// Some channels of a block may have an expected torque and others none.
@@ -272,15 +268,14 @@ class OscillatorBlockRun {
     }
   }
 
-  /// Counts of a tile of `count` samples that ends at `at`, and the states of channels that end
-  /// there.
-  void take_ended(std::size_t at, std::size_t count) {
+  /// Counts of a stretch, and the states of channels that end with it.
+  void end_stretch(std::size_t from, std::size_t to) {
     for (std::size_t lane = 0; lane < width; ++lane) {
-      if (!is_live(lane, at - count)) {
+      if (!is_live(lane, from)) {
         continue;
       }
-      take_counts(lanes_, lane, count, block_->states[lane]->counters);
-      if (!is_live(lane, at)) {
+      take_counts(lanes_, lane, to - from, block_->states[lane]->counters);
+      if (!is_live(lane, to)) {
         take_state(lanes_, lane, *block_->configs[lane], *block_->states[lane]);
       }
     }
@@ -302,7 +297,7 @@ class OscillatorBlockRun {
   OscillatorTile<Real> tile_ = {};
   Rows rows_ = {};
   Ahead<Real> ahead_[3];
-  std::size_t left_ = 0;  ///< samples until the next channel ends
+  std::size_t stretch_ = 0;  ///< samples in which no channel ends
   bool has_expected_ = false;
   bool has_torque_ = false;
   bool has_ripple_ = false;

@@ -84,7 +84,8 @@ struct OscillatorGroup {
 
   /// turned() of oscillator_state.hpp, without its correction of the length.
   template <std::size_t A, bool Reduced>
-  STRAINWAVE_INLINE void turn_order(const Memory& memory, std::size_t lane, L* now) const {
+  STRAINWAVE_INLINE void turn_order(const Memory& memory, std::size_t lane, const bool* slow,
+                                    L* now) const {
     if constexpr (SecondIsDouble && A == 1) {
       now[2] = fused_minus(now[1], now[1], now[0] * now[0]);
       const L half = now[0] * now[1];
@@ -92,15 +93,22 @@ struct OscillatorGroup {
     } else {
       const L before = c[2 * A];
       const L angle_rad = L::load(memory.order[A] + lane) * pending_rad;
-      const CosSin<L> turn = Reduced ? cos_sin_reduced(angle_rad) : cos_sin_of_radians(angle_rad);
+      CosSin<L> turn;
+      if constexpr (!Reduced) {
+        turn = cos_sin_of_radians(angle_rad);
+      } else if (A > 0 && slow[A]) {
+        turn = cos_sin_small(angle_rad);
+      } else {
+        turn = cos_sin_reduced(angle_rad);
+      }
       now[2 * A] = fused_minus(c[2 * A + 1], turn.sine, before * turn.cosine);
       now[2 * A + 1] = fused(before, turn.sine, c[2 * A + 1] * turn.cosine);
     }
   }
   template <bool Reduced, std::size_t... A>
-  STRAINWAVE_INLINE void turn_orders(const Memory& memory, std::size_t lane, L* now,
-                                     std::index_sequence<A...>) const {
-    (turn_order<A, Reduced>(memory, lane, now), ...);
+  STRAINWAVE_INLINE void turn_orders(const Memory& memory, std::size_t lane, const bool* slow,
+                                     L* now, std::index_sequence<A...>) const {
+    (turn_order<A, Reduced>(memory, lane, slow, now), ...);
   }
 
   /// Puts the length of the output row back to 1 to first order: rounding would let it drift.  An
@@ -121,6 +129,10 @@ struct OscillatorGroup {
     ((c[I] = now[I]), ...);
   }
 
+  [[nodiscard]] STRAINWAVE_INLINE Mask is_moving(const Memory& memory, std::size_t lane) const {
+    return (absolute(travel_rad) >= L::load(memory.minimum_travel_rad + lane)) &
+           (absolute(smoothed_speed_rad_s) >= L::load(memory.minimum_speed_rad_s + lane));
+  }
   STRAINWAVE_INLINE void smooth_speed(const Memory& memory, std::size_t lane) {
     smoothed_speed_rad_s = smoothed_speed_rad_s + L::load(memory.speed_share + lane) *
                                                       (last_speed_rad_s - smoothed_speed_rad_s);
@@ -291,14 +303,36 @@ struct OscillatorPlace {
   [[nodiscard]] STRAINWAVE_INLINE L expected_Nm(std::size_t k) const {
     return L::load(tile.expected_torque_Nm + k * tile.expected_stride + lane);
   }
+  /// What put() has put there.
+  [[nodiscard]] STRAINWAVE_INLINE L clean_Nm(std::size_t k) const {
+    const std::size_t at = k * block_width<Real> + lane;
+    return tile.torque_Nm != nullptr ? L::load(tile.torque_Nm + at)
+                                     : torque_Nm(k) - L::load(tile.ripple_Nm + at);
+  }
   STRAINWAVE_INLINE void put(std::size_t k, L clean_Nm, L ripple_Nm, L status) const {
-    clean_Nm.store(tile.torque_Nm + k * block_width<Real> + lane);
-    ripple_Nm.store(tile.ripple_Nm + k * tile.ripple_stride + lane);
+    if (tile.torque_Nm != nullptr) {
+      clean_Nm.store(tile.torque_Nm + k * block_width<Real> + lane);
+    }
+    if (tile.ripple_Nm != nullptr) {
+      ripple_Nm.store(tile.ripple_Nm + k * block_width<Real> + lane);
+    }
     if (tile.status != nullptr) {
       status.store(tile.status + k * block_width<Real> + lane);
     }
   }
 };
+
+/// Which orders turn so slowly, where usual_order is within its limit, that short series do.
+template <class Real, std::size_t Orders>
+STRAINWAVE_INLINE void find_slow_orders(const OscillatorLanes<Real, Orders>& memory,
+                                        std::size_t lane, bool* slow) {
+  using L = Lanes<Real>;
+  const L share = L::load(memory.usual_order + lane) *
+                  L(detail::largest_small_rad<Real> / detail::largest_reduced_rad<Real>);
+  for (std::size_t a = 1; a < Orders; ++a) {
+    slow[a] = (L::load(memory.order[a] + lane) <= share).all();
+  }
+}
 
 /// Usual samples from `start` on: every lane learns, and nothing is to be said.  Returns the first
 /// sample that is not so, which has changed nothing.
@@ -313,7 +347,6 @@ STRAINWAVE_KERNEL std::size_t filter_usual(OscillatorLanes<Real, Orders>& memory
   const OscillatorPlace<Real> place{tile, lane};
   const L largest_torque_Nm = Real(largest_usable_torque_Nm);
   const L noise_Nm2 = L::load(memory.measurement_noise_variance_Nm2 + lane);
-  const L minimum_travel_rad = L::load(memory.minimum_travel_rad + lane);
   const L usual_order = L::load(memory.usual_order + lane);
   Group group;
   group.load(memory, lane);
@@ -321,6 +354,9 @@ STRAINWAVE_KERNEL std::size_t filter_usual(OscillatorLanes<Real, Orders>& memory
       (absolute(usual_order * group.pending_rad) <= L(detail::largest_reduced_rad<Real>)).all();
   const Ahead<Real>* const ahead = lane == 0 ? tile.ahead : nullptr;
   const bool any_limit = memory.any_variance_limit;
+  const bool any_rest = memory.any_rest;
+  bool slow[Orders] = {};
+  find_slow_orders(memory, lane, slow);
   std::size_t k = start;
   for (; k < place.tile.sample_count && is_usual; ++k) {
     const L torque_Nm = place.torque_Nm(k);
@@ -328,19 +364,20 @@ STRAINWAVE_KERNEL std::size_t filter_usual(OscillatorLanes<Real, Orders>& memory
     const L expected_Nm = place.expected_Nm(k);
     const L rotation_rad = speed_rad_s * L::load(memory.sample_period_s + lane);
     if (ahead != nullptr) {
-      ahead[0].ask(k);
-      ahead[1].ask(k);
-      ahead[2].ask(k);
+      ahead[0].ask(tile.ahead_at, k);
+      ahead[1].ask(tile.ahead_at, k);
+      ahead[2].ask(tile.ahead_at, k);
     }
-    const auto usable =
-        (absolute(torque_Nm) <= largest_torque_Nm) & (absolute(expected_Nm) <= largest_torque_Nm) &
-        (absolute(group.travel_rad) >= minimum_travel_rad) &
-        (absolute(group.smoothed_speed_rad_s) >= L::load(memory.minimum_speed_rad_s + lane)) &
-        (absolute(usual_order * rotation_rad) <= L(detail::largest_reduced_rad<Real>));
+    // Both torques in one comparison, which is the stricter one.
+    auto usable = (absolute(torque_Nm) + absolute(expected_Nm) <= largest_torque_Nm) &
+                  (absolute(usual_order * rotation_rad) <= L(detail::largest_reduced_rad<Real>));
+    if (any_rest) {
+      usable = usable & group.is_moving(memory, lane);
+    }
     if (!usable.all()) [[unlikely]] {
       break;
     }
-    group.template turn_orders<true>(memory, lane, group.c, by_order);
+    group.template turn_orders<true>(memory, lane, slow, group.c, by_order);
     L pc[Group::states];
     group.project(group.c, pc, by_state);
     const L variance_Nm2 = Group::product(pc, group.c, noise_Nm2, by_order);
@@ -352,11 +389,12 @@ STRAINWAVE_KERNEL std::size_t filter_usual(OscillatorLanes<Real, Orders>& memory
     const L clean_Nm = torque_Nm - ripple_Nm;
     group.template update<true>(memory, lane, pc, L(Real(1)) / variance_Nm2, clean_Nm - expected_Nm,
                                 L(Real(1)), by_order);
-    group.last_torque_Nm = clean_Nm;
-    group.last_speed_rad_s = speed_rad_s;
     group.pending_rad = rotation_rad;
-    group.travel_rad = rotation_rad;
-    group.smooth_speed(memory, lane);
+    if (any_rest) {
+      group.travel_rad = rotation_rad;
+      group.last_speed_rad_s = speed_rad_s;
+      group.smooth_speed(memory, lane);
+    }
     if (k % samples_in_a_row == 0) {
       group.correct_length(by_order);
     }
@@ -371,6 +409,14 @@ STRAINWAVE_KERNEL std::size_t filter_usual(OscillatorLanes<Real, Orders>& memory
         place.put(k, clean_Nm, ripple_Nm, status);
       }
     }
+  }
+  if (k > start) {
+    group.last_torque_Nm = place.clean_Nm(k - 1);
+    group.last_speed_rad_s = place.speed_rad_s(k - 1);
+    group.travel_rad = group.last_speed_rad_s * L::load(memory.sample_period_s + lane);
+  }
+  if (!any_rest) {
+    group.smoothed_speed_rad_s = group.last_speed_rad_s;
   }
   group.correct_length(by_order);
   group.store(memory, lane);
@@ -397,13 +443,11 @@ STRAINWAVE_KERNEL void filter_any(OscillatorLanes<Real, Orders>& memory,
     const L torque_Nm = place.torque_Nm(k);
     const L expected_Nm = place.expected_Nm(k);
     L now[Group::states];
-    group.template turn_orders<false>(memory, lane, now, by_order);
+    group.template turn_orders<false>(memory, lane, nullptr, now, by_order);
     const L ripple_Nm = Group::product(now, group.x, Real(0), by_order);
     events.torque_usable = absolute(torque_Nm) <= largest_torque_Nm;
     events.expected_usable = absolute(expected_Nm) <= largest_torque_Nm;
-    events.moving =
-        (absolute(group.travel_rad) >= L::load(memory.minimum_travel_rad + lane)) &
-        (absolute(group.smoothed_speed_rad_s) >= L::load(memory.minimum_speed_rad_s + lane));
+    events.moving = group.is_moving(memory, lane);
     const L speed_rad_s = place.speed_rad_s(k);
     const L cycles = absolute(L::load(memory.highest_order + lane) *
                               (speed_rad_s * L::load(memory.turns_period_s + lane)));

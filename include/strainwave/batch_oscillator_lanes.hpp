@@ -52,10 +52,15 @@ struct alignas(64) OscillatorLanes {
   Row counts[8];
 
   bool any_variance_limit = false;
+  bool any_rest = false;  ///< some lane waits for travel or speed
   bool any_count = false;
 };
 
-/// Samples of a block, [time][block_width].  A stride of 0 reads or writes one row again and again.
+/// Samples after which counts are taken out of the lanes: they are exact in float up to 2^24.
+inline constexpr std::size_t counted_samples = std::size_t{1} << 20U;
+
+/// Samples of a block, [time][block_width].  A stride of 0 reads one row again and again; one of
+/// the two results may be null.
 template <class Real>
 struct OscillatorTile {
   const Real* measured_torque_Nm = nullptr;
@@ -64,10 +69,10 @@ struct OscillatorTile {
   std::size_t expected_stride = block_width<Real>;
   Real* torque_Nm = nullptr;
   Real* ripple_Nm = nullptr;
-  std::size_t ripple_stride = block_width<Real>;
   Real* status = nullptr;  ///< as numbers, which hold them exactly; null where not wanted
   std::size_t sample_count = 0;
-  const Ahead<Real>* ahead = nullptr;  ///< measured torque, speed and clean torque; null: none
+  const Ahead<Real>* ahead = nullptr;  ///< measured torque, speed and one result; null: none
+  std::size_t ahead_at = 0;
 };
 
 /// Flags that the published filter raises, as counted in OscillatorLanes.
@@ -82,6 +87,10 @@ namespace detail {
 /// Largest |angle| whose cosine and sine need no reduction, rad: an eighth of a turn.
 template <class Real>
 inline constexpr Real largest_reduced_rad = Real(0.785398);
+
+/// Largest |angle| for which cos_sin_small() of the lanes is good to the last place, rad.
+template <class Real>
+inline constexpr Real largest_small_rad = Real(0.03);
 
 /// See OscillatorLanes::usual_order.  The second order costs no cosine where it is twice the first.
 template <class Real, std::size_t MaxOrders>
@@ -122,6 +131,8 @@ inline void put_config(OscillatorLanes<Real, Orders>& lanes, std::size_t lane,
                                 : config.sample_period_s / (config.sample_period_s +
                                                             static_cast<Real>(speed_smoothing_s));
   lanes.any_variance_limit = lanes.any_variance_limit || is_limited;
+  lanes.any_rest =
+      lanes.any_rest || config.minimum_travel_rad > Real(0) || config.minimum_speed_rad_s > Real(0);
 }
 
 /// Cosine and sine of an order's present angle.
