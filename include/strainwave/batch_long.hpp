@@ -76,25 +76,58 @@ template <class Real, std::size_t MaxOrders>
   return memory;
 }
 
+/// What the filter learned from `count` samples from `start` on, as far as memory goes: standstill
+/// and unusable samples teach nothing.  `count` is a multiple of the sums that are made side by
+/// side, or less than these.
+template <class Real, std::size_t MaxOrders>
+[[nodiscard]] inline OscillatorMemory learned_from(
+    const OscillatorFilterConfig<Real, MaxOrders>& config, const OscillatorChannel<Real>& channel,
+    std::size_t start, std::size_t count) {
+  constexpr std::size_t sums = block_width<Real>;
+  Real samples[sums] = {};
+  Real travel_rad[sums] = {};
+  for (std::size_t k = 0; k < count; k += sums) {
+    for (std::size_t i = 0; i < sums && i < count; ++i) {
+      const Real speed_rad_s = absolute(channel.motor_speed_rad_s[start + k + i]);
+      const bool teaches = (speed_rad_s <= std::numeric_limits<Real>::max()) &
+                           (speed_rad_s >= config.minimum_speed_rad_s) &
+                           is_usable_torque(channel.measured_torque_Nm[start + k + i]);
+      samples[i] += teaches ? Real(1) : Real(0);
+      travel_rad[i] += teaches ? speed_rad_s * config.sample_period_s : Real(0);
+    }
+  }
+  OscillatorMemory learned;
+  for (std::size_t i = 0; i < sums; ++i) {
+    learned.samples += static_cast<double>(samples[i]);
+    learned.travel_rad += static_cast<double>(travel_rad[i]);
+  }
+  return learned;
+}
+
 /// Samples before `start` from which a filter has learned enough; `start` where the log begins
-/// before that.  Standstill and unusable samples teach nothing and are passed over.
+/// before that.
 template <class Real, std::size_t MaxOrders>
 [[nodiscard]] inline std::size_t warm_up_before(
     const OscillatorFilterConfig<Real, MaxOrders>& config, const OscillatorChannel<Real>& channel,
     std::size_t start, double memories) {
   const OscillatorMemory memory = memory_of(config);
-  double samples = 0.0;
-  double travel_rad = 0.0;
+  OscillatorMemory learned;
   std::size_t k = start;
-  while (k > 0 &&
-         (samples < memories * memory.samples || travel_rad < memories * memory.travel_rad)) {
-    --k;
-    const Real speed_rad_s = absolute(channel.motor_speed_rad_s[k]);
-    if (speed_rad_s <= std::numeric_limits<Real>::max() &&
-        speed_rad_s >= config.minimum_speed_rad_s &&
-        is_usable_torque(channel.measured_torque_Nm[k])) {
-      samples += 1.0;
-      travel_rad += static_cast<double>(speed_rad_s * config.sample_period_s);
+  // In long strides first, and sample by sample within the last of them.
+  for (std::size_t stride = tile_samples; k > 0;) {
+    stride = k < stride ? 1 : stride;
+    const OscillatorMemory more = learned_from(config, channel, k - stride, stride);
+    const bool is_enough = learned.samples + more.samples >= memories * memory.samples &&
+                           learned.travel_rad + more.travel_rad >= memories * memory.travel_rad;
+    if (is_enough && stride > 1) {
+      stride = 1;
+      continue;
+    }
+    learned.samples += more.samples;
+    learned.travel_rad += more.travel_rad;
+    k -= stride;
+    if (is_enough) {
+      break;
     }
   }
   return start - k;
@@ -125,23 +158,27 @@ struct Chunk {
   OscillatorFilterState<Real, MaxOrders> ended;
 };
 
-/// Chunks of about equal length.  Where a warm-up would take longer than half of a chunk there is
-/// no boundary: nothing would be won.
+/// Chunks of about equal length.  Where a warm-up would take longer than a chunk there is no
+/// boundary: nothing would be won.
 template <class Real, std::size_t MaxOrders>
 [[nodiscard]] inline std::vector<Chunk<Real, MaxOrders>> chunks_of(
     const OscillatorFilterConfig<Real, MaxOrders>& config, const OscillatorChannel<Real>& channel,
-    std::size_t count, double memories) {
-  std::vector<Chunk<Real, MaxOrders>> chunks(1);
+    std::size_t count, const LongOptions& options) {
   // Whole lines of the cache, and an odd number of them, so that chunks do not meet in one set.
   const std::size_t line = block_width<Real>;
   const std::size_t length = ((channel.sample_count / (count * line) + 1U) | 1U) * line;
-  for (std::size_t start = length; start < channel.sample_count; start += length) {
-    const std::size_t warm_up = warm_up_before(config, channel, start, memories);
-    if (warm_up <= length / 2) {
+  std::vector<std::size_t> warm_ups((channel.sample_count - 1) / length);
+  for_each_part(warm_ups.size(), options.batch.thread_count, [&](std::size_t i) {
+    warm_ups[i] = warm_up_before(config, channel, (i + 1) * length, options.warm_up_memories);
+  });
+  std::vector<Chunk<Real, MaxOrders>> chunks(1);
+  for (std::size_t i = 0; i < warm_ups.size(); ++i) {
+    if (warm_ups[i] <= length) {
+      const std::size_t start = (i + 1) * length;
       chunks.back().count = start - chunks.back().start;
       chunks.emplace_back();
       chunks.back().start = start;
-      chunks.back().warm_up = warm_up;
+      chunks.back().warm_up = warm_ups[i];
     }
   }
   chunks.back().count = channel.sample_count - chunks.back().start;
@@ -258,8 +295,11 @@ template <class Real, std::size_t MaxOrders>
   return std::max<std::size_t>(typical, 1);
 }
 
-/// How many chunks a log is cut into, each of four warm-ups at least; 1 where it is filtered in
-/// sequence.
+/// Fewer chunks than these leave most lanes empty, and are no faster than a sequence.
+inline constexpr std::size_t fewest_chunks = 4;
+
+/// How many chunks a log is cut into, each of two warm-ups at least; 1 where it is filtered in
+/// sequence.  All lanes of all threads are filled first; more blocks cost more warm-ups.
 template <class Real, std::size_t MaxOrders>
 [[nodiscard]] inline std::size_t chunk_count_for(
     const OscillatorFilterConfig<Real, MaxOrders>& config, const OscillatorChannel<Real>& channel,
@@ -268,10 +308,13 @@ template <class Real, std::size_t MaxOrders>
       kind_of(config).orders == 0) {
     return 1;
   }
-  const std::size_t threads = std::max<std::size_t>(options.batch.thread_count, 1);
+  const std::size_t at_once =
+      block_width<Real> * std::max<std::size_t>(options.batch.thread_count, 1);
   const std::size_t warm_up = typical_warm_up(config, channel, options.warm_up_memories);
-  const std::size_t most = channel.sample_count / std::max(4 * warm_up, 2 * tile_samples);
-  return std::min(block_width<Real> * blocks_per_thread * threads, most);
+  const std::size_t most = channel.sample_count / std::max(2 * warm_up, 2 * tile_samples);
+  const bool is_long = channel.sample_count / (blocks_per_thread * at_once) >= 16 * warm_up;
+  const std::size_t count = std::min(is_long ? blocks_per_thread * at_once : at_once, most);
+  return count < fewest_chunks ? 1 : count;
 }
 
 }  // namespace detail
@@ -284,7 +327,7 @@ LongReport process_long(const OscillatorFilterConfig<Real, MaxOrders>& config,
   const std::size_t count = detail::chunk_count_for(config, channel, options);
   std::vector<detail::Chunk<Real, MaxOrders>> chunks;
   if (count > 1) {
-    chunks = detail::chunks_of(config, channel, count, options.warm_up_memories);
+    chunks = detail::chunks_of(config, channel, count, options);
   }
   if (chunks.size() < 2) {
     detail::filter_one(config, state, channel);

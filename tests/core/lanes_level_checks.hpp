@@ -11,6 +11,15 @@ void cos_sin_of_array(const Real* angle_rad, std::size_t size, Real* cosine, Rea
   }
 }
 
+template <class Real>
+void cos_sin_of_small(const Real* angle_rad, std::size_t size, Real* cosine, Real* sine) {
+  for (std::size_t i = 0; i < size; i += Lanes<Real>::count) {
+    const CosSin<Lanes<Real>> wave = cos_sin_small(Lanes<Real>::load(angle_rad + i));
+    wave.cosine.store(cosine + i);
+    wave.sine.store(sine + i);
+  }
+}
+
 /// The larger of both where the first is not below the second, the square root of the first's
 /// magnitude elsewhere: comparison, selection and the rest in one.
 template <class Real>

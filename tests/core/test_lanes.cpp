@@ -65,6 +65,31 @@ TYPED_TEST(LanesOf, CosineAndSineAreGoodToTwoUnitsInTheLastPlace) {
   FOR_EACH_LEVEL(CHECK_COS_SIN);
 }
 
+TYPED_TEST(LanesOf, CosineAndSineOfSmallAnglesAreGoodToTheLastPlace) {
+  using Real = TypeParam;
+  constexpr auto epsilon = static_cast<long double>(std::numeric_limits<Real>::epsilon());
+  std::vector<Real> angle_rad;
+  for (int i = -3200; i <= 3200; i += 25) {
+    angle_rad.push_back(static_cast<Real>(i) * Real(0.03 / 3200));
+  }
+  angle_rad.resize(272, Real(0));
+  std::vector<Real> cosine(angle_rad.size());
+  std::vector<Real> sine(angle_rad.size());
+#define CHECK_SMALL(level)                                                                       \
+  level::cos_sin_of_small<Real>(angle_rad.data(), angle_rad.size(), cosine.data(), sine.data()); \
+  expect_close()
+  const auto expect_close = [&] {
+    for (std::size_t i = 0; i < angle_rad.size(); ++i) {
+      const auto exact = static_cast<long double>(angle_rad[i]);
+      EXPECT_LE(std::fabs(static_cast<long double>(cosine[i]) - std::cos(exact)), epsilon);
+      // A rotation's error adds up from sample to sample: it is to be one of rounding.
+      EXPECT_LE(std::fabs(static_cast<long double>(sine[i]) - std::sin(exact)),
+                1.5L * epsilon * std::fabs(exact));
+    }
+  };
+  FOR_EACH_LEVEL(CHECK_SMALL);
+}
+
 TYPED_TEST(LanesOf, ComparisonAndSelectionAreThoseOfSingleNumbers) {
   using Real = TypeParam;
   using Limits = std::numeric_limits<Real>;
