@@ -111,7 +111,7 @@ STRAINWAVE_KERNEL std::size_t gather_squares(const Real* const* rows, std::size_
   constexpr std::size_t side = Square<Real>::side;
   for (std::size_t lane = 0; lane < width; lane += side) {
     for (std::size_t k = 0; k + side <= count; k += side) {
-      Square<Real> square;
+      Square<Real> square = {};
 #pragma GCC unroll 16
       for (std::size_t i = 0; i < side; ++i) {
         square.load_row(i, rows[lane + i] + at + k);
@@ -134,7 +134,7 @@ STRAINWAVE_KERNEL std::size_t scatter_squares(const Real* tile, std::size_t coun
   constexpr std::size_t side = Square<Real>::side;
   for (std::size_t lane = 0; lane < width; lane += side) {
     for (std::size_t k = 0; k + side <= count; k += side) {
-      Square<Real> square;
+      Square<Real> square = {};
 #pragma GCC unroll 16
       for (std::size_t i = 0; i < side; ++i) {
         square.load_row(i, tile + (k + i) * width + lane);

@@ -152,7 +152,7 @@ class OscillatorBlockRun {
 
   OscillatorBlockRun(const OscillatorBlock<Real, MaxOrders>& block, VectorLevel level,
                      TileKernel<Real, Orders> kernel)
-      : block_(&block), level_(level), kernel_(kernel) {
+      : block_(&block), kernel_(kernel), level_(level) {
     std::size_t known = 0;
     while (block.configs[known] == nullptr) {
       ++known;
@@ -291,13 +291,13 @@ class OscillatorBlockRun {
   };
 
   const OscillatorBlock<Real, MaxOrders>* block_;
-  VectorLevel level_;
   TileKernel<Real, Orders> kernel_;
   OscillatorLanes<Real, Orders> lanes_ = {};
   OscillatorTile<Real> tile_ = {};
   Rows rows_ = {};
   Ahead<Real> ahead_[3];
   std::size_t stretch_ = 0;  ///< samples in which no channel ends
+  VectorLevel level_;
   bool has_expected_ = false;
   bool has_torque_ = false;
   bool has_ripple_ = false;

@@ -82,6 +82,14 @@ struct OscillatorGroup {
 
   // ---- output row -------------------------------------------------------------------------------
 
+  template <std::size_t A, bool Reduced>
+  STRAINWAVE_INLINE static CosSin<L> cos_sin_of(L angle_rad, const bool* slow) {
+    if constexpr (!Reduced) {
+      return cos_sin_of_radians(angle_rad);
+    } else {
+      return A > 0 && slow[A] ? cos_sin_small(angle_rad) : cos_sin_reduced(angle_rad);
+    }
+  }
   /// turned() of oscillator_state.hpp, without its correction of the length.
   template <std::size_t A, bool Reduced>
   STRAINWAVE_INLINE void turn_order(const Memory& memory, std::size_t lane, const bool* slow,
@@ -93,14 +101,7 @@ struct OscillatorGroup {
     } else {
       const L before = c[2 * A];
       const L angle_rad = L::load(memory.order[A] + lane) * pending_rad;
-      CosSin<L> turn;
-      if constexpr (!Reduced) {
-        turn = cos_sin_of_radians(angle_rad);
-      } else if (A > 0 && slow[A]) {
-        turn = cos_sin_small(angle_rad);
-      } else {
-        turn = cos_sin_reduced(angle_rad);
-      }
+      const CosSin<L> turn = cos_sin_of<A, Reduced>(angle_rad, slow);
       now[2 * A] = fused_minus(c[2 * A + 1], turn.sine, before * turn.cosine);
       now[2 * A + 1] = fused(before, turn.sine, c[2 * A + 1] * turn.cosine);
     }

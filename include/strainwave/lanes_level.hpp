@@ -278,13 +278,17 @@ template <class Real>
 STRAINWAVE_INLINE CosSin<Lanes<Real>> cos_sin_small(Lanes<Real> angle_rad) {
   using L = Lanes<Real>;
   const L square = angle_rad * angle_rad;
-  L sine = Real(-1) / Real(6);
-  L cosine = Real(0.5);
-  if constexpr (sizeof(Real) != 4) {
-    sine = fused(square, fused(square, L(Real(-1) / Real(5040)), L(Real(1) / Real(120))), sine);
-    cosine = fused(square, fused(square, L(Real(1) / Real(720)), L(Real(-1) / Real(24))), cosine);
+  const L third = angle_rad * square;
+  if constexpr (sizeof(Real) == 4) {
+    return {fused_minus(square, L(Real(0.5)), L(Real(1))),
+            fused(third, L(Real(-1) / Real(6)), angle_rad)};
+  } else {
+    L sine = fused(square, L(Real(-1) / Real(5040)), L(Real(1) / Real(120)));
+    L cosine = fused(square, L(Real(1) / Real(720)), L(Real(-1) / Real(24)));
+    sine = fused(square, sine, L(Real(-1) / Real(6)));
+    cosine = fused(square, cosine, L(Real(0.5)));
+    return {fused_minus(square, cosine, L(Real(1))), fused(third, sine, angle_rad)};
   }
-  return {fused_minus(square, cosine, L(Real(1))), fused(angle_rad * square, sine, angle_rad)};
 }
 
 /// Cosine and sine of angles of up to largest_reducible_angle_rad; anything for larger ones.
