@@ -290,24 +290,24 @@ class OscillatorBlockRun {
     Real* ripple[width];
   };
 
-  const OscillatorBlock<Real, MaxOrders>* block_;
-  TileKernel<Real, Orders> kernel_;
   OscillatorLanes<Real, Orders> lanes_ = {};
-  OscillatorTile<Real> tile_ = {};
-  Rows rows_ = {};
-  Ahead<Real> ahead_[3];
-  std::size_t stretch_ = 0;  ///< samples in which no channel ends
-  VectorLevel level_;
-  bool has_expected_ = false;
-  bool has_torque_ = false;
-  bool has_ripple_ = false;
-  bool has_status_ = false;
   Tile<Real> measured_;
   Tile<Real> speed_;
   Tile<Real> expected_;
   Tile<Real> torque_;
   Tile<Real> ripple_;
   Tile<Real> status_;
+  const OscillatorBlock<Real, MaxOrders>* block_;
+  TileKernel<Real, Orders> kernel_;
+  std::size_t stretch_ = 0;  ///< samples in which no channel ends
+  OscillatorTile<Real> tile_ = {};
+  Ahead<Real> ahead_[3];
+  Rows rows_ = {};
+  VectorLevel level_;
+  bool has_expected_ = false;
+  bool has_torque_ = false;
+  bool has_ripple_ = false;
+  bool has_status_ = false;
 };
 
 /// A block through its channels' recordings, at a vector level; one by one where there is no

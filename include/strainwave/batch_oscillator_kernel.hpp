@@ -92,24 +92,26 @@ struct OscillatorGroup {
   }
   /// turned() of oscillator_state.hpp, without its correction of the length.
   template <std::size_t A, bool Reduced>
-  STRAINWAVE_INLINE void turn_order(const Memory& memory, std::size_t lane, const bool* slow,
-                                    L* now) const {
+  STRAINWAVE_INLINE void turn_order(const Memory& memory, std::size_t lane, L rotation_rad,
+                                    const bool* slow, L* now) const {
     if constexpr (SecondIsDouble && A == 1) {
       now[2] = fused_minus(now[1], now[1], now[0] * now[0]);
       const L half = now[0] * now[1];
       now[3] = half + half;
     } else {
       const L before = c[2 * A];
-      const L angle_rad = L::load(memory.order[A] + lane) * pending_rad;
+      const L angle_rad = L::load(memory.order[A] + lane) * rotation_rad;
       const CosSin<L> turn = cos_sin_of<A, Reduced>(angle_rad, slow);
       now[2 * A] = fused_minus(c[2 * A + 1], turn.sine, before * turn.cosine);
       now[2 * A + 1] = fused(before, turn.sine, c[2 * A + 1] * turn.cosine);
     }
   }
+  /// The output row after a rotation of the motor; `now` may be the row itself.
   template <bool Reduced, std::size_t... A>
-  STRAINWAVE_INLINE void turn_orders(const Memory& memory, std::size_t lane, const bool* slow,
-                                     L* now, std::index_sequence<A...>) const {
-    (turn_order<A, Reduced>(memory, lane, slow, now), ...);
+  STRAINWAVE_INLINE void turn_orders(const Memory& memory, std::size_t lane, L rotation_rad,
+                                     const bool* slow, L* now,
+                                     std::index_sequence<A...> /*orders*/) const {
+    (turn_order<A, Reduced>(memory, lane, rotation_rad, slow, now), ...);
   }
 
   /// Puts the length of the output row back to 1 to first order: rounding would let it drift.  An
@@ -141,27 +143,24 @@ struct OscillatorGroup {
 
   // ---- filter -----------------------------------------------------------------------------------
 
-  // Sums of products in two chains, of cosines and of sines: a chain waits for each of its
-  // products.
+  // Sums of products order by order: a chain waits for each of its products, and sums of two
+  // numbers are made by other units.
 
   template <std::size_t... A>
   STRAINWAVE_INLINE static L product(const L* a, const L* b, L start, std::index_sequence<A...>) {
-    L cosines = start;
-    L sines = a[1] * b[1];
-    ((cosines = fused(a[2 * A], b[2 * A], cosines),
-      sines = A == 0 ? sines : fused(a[2 * A + 1], b[2 * A + 1], sines)),
-     ...);
-    return cosines + sines;
+    L sum = fused(a[1], b[1], fused(a[0], b[0], start));
+    ((sum = A == 0 ? sum : sum + fused(a[2 * A + 1], b[2 * A + 1], a[2 * A] * b[2 * A])), ...);
+    return sum;
   }
   /// Row I of P C'.
   template <std::size_t I, std::size_t... A>
   STRAINWAVE_INLINE L projected(const L* row, std::index_sequence<A...>) const {
-    L cosines = p[at<I, 0>] * row[0];
-    L sines = p[at<I, 1>] * row[1];
-    ((cosines = A == 0 ? cosines : fused(p[at<I, 2 * A>], row[2 * A], cosines),
-      sines = A == 0 ? sines : fused(p[at<I, 2 * A + 1>], row[2 * A + 1], sines)),
+    L sum = fused(p[at<I, 1>], row[1], p[at<I, 0>] * row[0]);
+    ((sum = A == 0
+                ? sum
+                : sum + fused(p[at<I, 2 * A + 1>], row[2 * A + 1], p[at<I, 2 * A>] * row[2 * A])),
      ...);
-    return cosines + sines;
+    return sum;
   }
   template <std::size_t... I>
   STRAINWAVE_INLINE void project(const L* row, L* pc, std::index_sequence<I...>) const {
@@ -351,65 +350,73 @@ STRAINWAVE_KERNEL std::size_t filter_usual(OscillatorLanes<Real, Orders>& memory
   const L usual_order = L::load(memory.usual_order + lane);
   Group group;
   group.load(memory, lane);
-  const bool is_usual =
-      (absolute(usual_order * group.pending_rad) <= L(detail::largest_reduced_rad<Real>)).all();
+  if (!(absolute(usual_order * group.pending_rad) <= L(detail::largest_reduced_rad<Real>)).all()) {
+    return start;
+  }
   const Ahead<Real>* const ahead = lane == 0 ? tile.ahead : nullptr;
   const bool any_limit = memory.any_variance_limit;
   const bool any_rest = memory.any_rest;
   bool slow[Orders] = {};
   find_slow_orders(memory, lane, slow);
+  group.template turn_orders<true>(memory, lane, group.pending_rad, slow, group.c, by_order);
+  group.pending_rad = Real(0);
   std::size_t k = start;
-  for (; k < place.tile.sample_count && is_usual; ++k) {
-    const L torque_Nm = place.torque_Nm(k);
-    const L speed_rad_s = place.speed_rad_s(k);
-    const L expected_Nm = place.expected_Nm(k);
-    const L rotation_rad = speed_rad_s * L::load(memory.sample_period_s + lane);
-    if (ahead != nullptr) {
-      ahead[0].ask(tile.ahead_at, k);
-      ahead[1].ask(tile.ahead_at, k);
-      ahead[2].ask(tile.ahead_at, k);
-    }
-    // Both torques in one comparison, which is the stricter one.
-    auto usable = (absolute(torque_Nm) + absolute(expected_Nm) <= largest_torque_Nm) &
-                  (absolute(usual_order * rotation_rad) <= L(detail::largest_reduced_rad<Real>));
-    if (any_rest) {
-      usable = usable & group.is_moving(memory, lane);
-    }
-    if (!usable.all()) [[unlikely]] {
-      break;
-    }
-    group.template turn_orders<true>(memory, lane, slow, group.c, by_order);
-    L pc[Group::states];
-    group.project(group.c, pc, by_state);
-    const L variance_Nm2 = Group::product(pc, group.c, noise_Nm2, by_order);
-    if (!is_healthy(variance_Nm2, noise_Nm2).all()) [[unlikely]] {
-      group.pending_rad = Real(0);  // the output row is that of this sample already
-      break;
-    }
-    const L ripple_Nm = Group::product(group.c, group.x, Real(0), by_order);
-    const L clean_Nm = torque_Nm - ripple_Nm;
-    group.template update<true>(memory, lane, pc, L(Real(1)) / variance_Nm2, clean_Nm - expected_Nm,
-                                L(Real(1)), by_order);
-    group.pending_rad = rotation_rad;
-    if (any_rest) {
-      group.travel_rad = rotation_rad;
-      group.last_speed_rad_s = speed_rad_s;
-      group.smooth_speed(memory, lane);
-    }
-    if (k % samples_in_a_row == 0) {
-      group.correct_length(by_order);
-    }
-    place.put(k, clean_Nm, ripple_Nm, Real(0));
-    if (any_limit) {
-      const auto beyond = group.beyond_limit(memory, lane, by_order);
-      if (beyond.any()) [[unlikely]] {
-        group.limit_variance(memory, lane, beyond, by_order);
-        L status = Real(0);
-        raise(beyond, 3, memory.counts, lane, status);
-        memory.any_count = true;
-        place.put(k, clean_Nm, ripple_Nm, status);
+  bool is_usual = true;
+  while (is_usual && k < place.tile.sample_count) {
+    const std::size_t row_end = (k / samples_in_a_row + 1) * samples_in_a_row;
+    const std::size_t end = row_end < place.tile.sample_count ? row_end : place.tile.sample_count;
+    for (; k < end; ++k) {
+      const L torque_Nm = place.torque_Nm(k);
+      const L speed_rad_s = place.speed_rad_s(k);
+      const L expected_Nm = place.expected_Nm(k);
+      const L rotation_rad = speed_rad_s * L::load(memory.sample_period_s + lane);
+      if (ahead != nullptr) {
+        ahead[0].ask(tile.ahead_at, k);
+        ahead[1].ask(tile.ahead_at, k);
+        ahead[2].ask(tile.ahead_at, k);
+      }
+      // Both torques in one comparison, which is the stricter one.
+      auto usable = (absolute(torque_Nm) + absolute(expected_Nm) <= largest_torque_Nm) &
+                    (absolute(usual_order * rotation_rad) <= L(detail::largest_reduced_rad<Real>));
+      if (any_rest) {
+        usable = usable & group.is_moving(memory, lane);
+      }
+      is_usual = usable.all();
+      if (!is_usual) [[unlikely]] {
+        break;
+      }
+      L pc[Group::states];
+      group.project(group.c, pc, by_state);
+      const L variance_Nm2 = Group::product(pc, group.c, noise_Nm2, by_order);
+      is_usual = is_healthy(variance_Nm2, noise_Nm2).all();
+      if (!is_usual) [[unlikely]] {
+        break;
+      }
+      const L ripple_Nm = Group::product(group.c, group.x, Real(0), by_order);
+      const L clean_Nm = torque_Nm - ripple_Nm;
+      const L per_variance = L(Real(1)) / variance_Nm2;
+      // The row of the next sample, while the quotient is waited for.
+      group.template turn_orders<true>(memory, lane, rotation_rad, slow, group.c, by_order);
+      group.template update<true>(memory, lane, pc, per_variance, clean_Nm - expected_Nm,
+                                  L(Real(1)), by_order);
+      if (any_rest) {
+        group.travel_rad = rotation_rad;
+        group.last_speed_rad_s = speed_rad_s;
+        group.smooth_speed(memory, lane);
+      }
+      place.put(k, clean_Nm, ripple_Nm, Real(0));
+      if (any_limit) {
+        const auto beyond = group.beyond_limit(memory, lane, by_order);
+        if (beyond.any()) [[unlikely]] {
+          group.limit_variance(memory, lane, beyond, by_order);
+          L status = Real(0);
+          raise(beyond, 3, memory.counts, lane, status);
+          memory.any_count = true;
+          place.put(k, clean_Nm, ripple_Nm, status);
+        }
       }
     }
+    group.correct_length(by_order);
   }
   if (k > start) {
     group.last_torque_Nm = place.clean_Nm(k - 1);
@@ -419,7 +426,6 @@ STRAINWAVE_KERNEL std::size_t filter_usual(OscillatorLanes<Real, Orders>& memory
   if (!any_rest) {
     group.smoothed_speed_rad_s = group.last_speed_rad_s;
   }
-  group.correct_length(by_order);
   group.store(memory, lane);
   return k;
 }
@@ -444,7 +450,7 @@ STRAINWAVE_KERNEL void filter_any(OscillatorLanes<Real, Orders>& memory,
     const L torque_Nm = place.torque_Nm(k);
     const L expected_Nm = place.expected_Nm(k);
     L now[Group::states];
-    group.template turn_orders<false>(memory, lane, nullptr, now, by_order);
+    group.template turn_orders<false>(memory, lane, group.pending_rad, nullptr, now, by_order);
     const L ripple_Nm = Group::product(now, group.x, Real(0), by_order);
     events.torque_usable = absolute(torque_Nm) <= largest_torque_Nm;
     events.expected_usable = absolute(expected_Nm) <= largest_torque_Nm;
