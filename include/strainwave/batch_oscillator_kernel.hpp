@@ -136,6 +136,12 @@ struct OscillatorGroup {
     return (absolute(travel_rad) >= L::load(memory.minimum_travel_rad + lane)) &
            (absolute(smoothed_speed_rad_s) >= L::load(memory.minimum_speed_rad_s + lane));
   }
+  /// Whether no angle has to be reduced, and no order turns half a cycle.
+  [[nodiscard]] STRAINWAVE_INLINE static Mask is_usual_rotation(const Memory& memory,
+                                                                std::size_t lane, L rotation_rad) {
+    return absolute(L::load(memory.usual_order + lane) * rotation_rad) <=
+           L(detail::largest_reduced_rad<Real>);
+  }
   STRAINWAVE_INLINE void smooth_speed(const Memory& memory, std::size_t lane) {
     smoothed_speed_rad_s = smoothed_speed_rad_s + L::load(memory.speed_share + lane) *
                                                       (last_speed_rad_s - smoothed_speed_rad_s);
@@ -316,6 +322,9 @@ struct OscillatorPlace {
     if (tile.ripple_Nm != nullptr) {
       ripple_Nm.store(tile.ripple_Nm + k * block_width<Real> + lane);
     }
+    put_status(k, status);
+  }
+  STRAINWAVE_INLINE void put_status(std::size_t k, L status) const {
     if (tile.status != nullptr) {
       status.store(tile.status + k * block_width<Real> + lane);
     }
@@ -334,86 +343,102 @@ STRAINWAVE_INLINE void find_slow_orders(const OscillatorLanes<Real, Orders>& mem
   }
 }
 
+/// Holds an order's variances to their limit, where there is one, and says so.
+template <class Real, std::size_t Orders, class Group>
+STRAINWAVE_INLINE void limit_usual(OscillatorLanes<Real, Orders>& memory, std::size_t lane,
+                                   Group& group, const OscillatorPlace<Real>& place,
+                                   std::size_t k) {
+  constexpr auto by_order = std::make_index_sequence<Orders>{};
+  const auto beyond = group.beyond_limit(memory, lane, by_order);
+  if (beyond.any()) [[unlikely]] {
+    group.limit_variance(memory, lane, beyond, by_order);
+    Lanes<Real> status = Real(0);
+    raise(beyond, 3, memory.counts, lane, status);
+    memory.any_count = true;
+    place.put_status(k, status);
+  }
+}
+
+/// One usual sample; false, and nothing has changed, where it is not one.  The output row is that
+/// of this sample, and then that of the next one.
+template <class Real, std::size_t Orders, class Group>
+STRAINWAVE_INLINE bool learn_usual(OscillatorLanes<Real, Orders>& memory, std::size_t lane,
+                                   Group& group, const OscillatorPlace<Real>& place,
+                                   const bool* slow, std::size_t k) {
+  using L = Lanes<Real>;
+  constexpr auto by_order = std::make_index_sequence<Orders>{};
+  const L torque_Nm = place.torque_Nm(k);
+  const L expected_Nm = place.expected_Nm(k);
+  const L speed_rad_s = place.speed_rad_s(k);
+  const L rotation_rad = speed_rad_s * L::load(memory.sample_period_s + lane);
+  // Both torques in one comparison, which is the stricter one.
+  auto usable = (absolute(torque_Nm) + absolute(expected_Nm) <= L(Real(largest_usable_torque_Nm))) &
+                group.is_usual_rotation(memory, lane, rotation_rad);
+  if (memory.any_rest) {
+    usable = usable & group.is_moving(memory, lane);
+  }
+  if (!usable.all()) [[unlikely]] {
+    return false;
+  }
+  const L noise_Nm2 = L::load(memory.measurement_noise_variance_Nm2 + lane);
+  L pc[Group::states];
+  group.project(group.c, pc, std::make_index_sequence<Group::states>{});
+  const L variance_Nm2 = Group::product(pc, group.c, noise_Nm2, by_order);
+  if (!is_healthy(variance_Nm2, noise_Nm2).all()) [[unlikely]] {
+    return false;
+  }
+  const L ripple_Nm = Group::product(group.c, group.x, Real(0), by_order);
+  const L clean_Nm = torque_Nm - ripple_Nm;
+  const L per_variance = L(Real(1)) / variance_Nm2;
+  // The next row is made while the quotient is waited for.
+  group.template turn_orders<true>(memory, lane, rotation_rad, slow, group.c, by_order);
+  group.template update<true>(memory, lane, pc, per_variance, clean_Nm - expected_Nm, L(Real(1)),
+                              by_order);
+  if (memory.any_rest) {
+    group.travel_rad = rotation_rad;
+    group.last_speed_rad_s = speed_rad_s;
+    group.smooth_speed(memory, lane);
+  }
+  place.put(k, clean_Nm, ripple_Nm, Real(0));
+  if (memory.any_variance_limit) {
+    limit_usual(memory, lane, group, place, k);
+  }
+  return true;
+}
+
 /// Usual samples from `start` on: every lane learns, and nothing is to be said.  Returns the first
 /// sample that is not so, which has changed nothing.
 template <class Real, std::size_t Orders, bool SecondIsDouble>
 STRAINWAVE_KERNEL std::size_t filter_usual(OscillatorLanes<Real, Orders>& memory,
                                            const OscillatorTile<Real>& tile, std::size_t lane,
                                            std::size_t start) {
-  using Group = OscillatorGroup<Real, Orders, SecondIsDouble>;
   using L = Lanes<Real>;
   constexpr auto by_order = std::make_index_sequence<Orders>{};
-  constexpr auto by_state = std::make_index_sequence<Group::states>{};
   const OscillatorPlace<Real> place{tile, lane};
-  const L largest_torque_Nm = Real(largest_usable_torque_Nm);
-  const L noise_Nm2 = L::load(memory.measurement_noise_variance_Nm2 + lane);
-  const L usual_order = L::load(memory.usual_order + lane);
-  Group group;
+  OscillatorGroup<Real, Orders, SecondIsDouble> group;
   group.load(memory, lane);
-  if (!(absolute(usual_order * group.pending_rad) <= L(detail::largest_reduced_rad<Real>)).all()) {
+  if (!group.is_usual_rotation(memory, lane, group.pending_rad).all()) {
     return start;
   }
-  const Ahead<Real>* const ahead = lane == 0 ? tile.ahead : nullptr;
-  const bool any_limit = memory.any_variance_limit;
-  const bool any_rest = memory.any_rest;
   bool slow[Orders] = {};
   find_slow_orders(memory, lane, slow);
   group.template turn_orders<true>(memory, lane, group.pending_rad, slow, group.c, by_order);
   group.pending_rad = Real(0);
+  const Ahead<Real>* const ahead = lane == 0 ? tile.ahead : nullptr;
   std::size_t k = start;
   bool is_usual = true;
-  while (is_usual && k < place.tile.sample_count) {
+  while (is_usual && k < tile.sample_count) {
     const std::size_t row_end = (k / samples_in_a_row + 1) * samples_in_a_row;
-    const std::size_t end = row_end < place.tile.sample_count ? row_end : place.tile.sample_count;
+    const std::size_t end = row_end < tile.sample_count ? row_end : tile.sample_count;
     for (; k < end; ++k) {
-      const L torque_Nm = place.torque_Nm(k);
-      const L speed_rad_s = place.speed_rad_s(k);
-      const L expected_Nm = place.expected_Nm(k);
-      const L rotation_rad = speed_rad_s * L::load(memory.sample_period_s + lane);
       if (ahead != nullptr) {
         ahead[0].ask(tile.ahead_at, k);
         ahead[1].ask(tile.ahead_at, k);
         ahead[2].ask(tile.ahead_at, k);
       }
-      // Both torques in one comparison, which is the stricter one.
-      auto usable = (absolute(torque_Nm) + absolute(expected_Nm) <= largest_torque_Nm) &
-                    (absolute(usual_order * rotation_rad) <= L(detail::largest_reduced_rad<Real>));
-      if (any_rest) {
-        usable = usable & group.is_moving(memory, lane);
-      }
-      is_usual = usable.all();
+      is_usual = learn_usual(memory, lane, group, place, slow, k);
       if (!is_usual) [[unlikely]] {
         break;
-      }
-      L pc[Group::states];
-      group.project(group.c, pc, by_state);
-      const L variance_Nm2 = Group::product(pc, group.c, noise_Nm2, by_order);
-      is_usual = is_healthy(variance_Nm2, noise_Nm2).all();
-      if (!is_usual) [[unlikely]] {
-        break;
-      }
-      const L ripple_Nm = Group::product(group.c, group.x, Real(0), by_order);
-      const L clean_Nm = torque_Nm - ripple_Nm;
-      const L per_variance = L(Real(1)) / variance_Nm2;
-      // The row of the next sample, while the quotient is waited for.
-      group.template turn_orders<true>(memory, lane, rotation_rad, slow, group.c, by_order);
-      group.template update<true>(memory, lane, pc, per_variance, clean_Nm - expected_Nm,
-                                  L(Real(1)), by_order);
-      if (any_rest) {
-        group.travel_rad = rotation_rad;
-        group.last_speed_rad_s = speed_rad_s;
-        group.smooth_speed(memory, lane);
-      }
-      place.put(k, clean_Nm, ripple_Nm, Real(0));
-      if (any_limit) {
-        const auto beyond = group.beyond_limit(memory, lane, by_order);
-        if (beyond.any()) [[unlikely]] {
-          group.limit_variance(memory, lane, beyond, by_order);
-          L status = Real(0);
-          raise(beyond, 3, memory.counts, lane, status);
-          memory.any_count = true;
-          place.put(k, clean_Nm, ripple_Nm, status);
-        }
       }
     }
     group.correct_length(by_order);
@@ -423,7 +448,7 @@ STRAINWAVE_KERNEL std::size_t filter_usual(OscillatorLanes<Real, Orders>& memory
     group.last_speed_rad_s = place.speed_rad_s(k - 1);
     group.travel_rad = group.last_speed_rad_s * L::load(memory.sample_period_s + lane);
   }
-  if (!any_rest) {
+  if (!memory.any_rest) {
     group.smoothed_speed_rad_s = group.last_speed_rad_s;
   }
   group.store(memory, lane);
