@@ -76,58 +76,25 @@ template <class Real, std::size_t MaxOrders>
   return memory;
 }
 
-/// What the filter learned from `count` samples from `start` on, as far as memory goes: standstill
-/// and unusable samples teach nothing.  `count` is a multiple of the sums that are made side by
-/// side, or less than these.
-template <class Real, std::size_t MaxOrders>
-[[nodiscard]] inline OscillatorMemory learned_from(
-    const OscillatorFilterConfig<Real, MaxOrders>& config, const OscillatorChannel<Real>& channel,
-    std::size_t start, std::size_t count) {
-  constexpr std::size_t sums = block_width<Real>;
-  Real samples[sums] = {};
-  Real travel_rad[sums] = {};
-  for (std::size_t k = 0; k < count; k += sums) {
-    for (std::size_t i = 0; i < sums && i < count; ++i) {
-      const Real speed_rad_s = absolute(channel.motor_speed_rad_s[start + k + i]);
-      const bool teaches = (speed_rad_s <= std::numeric_limits<Real>::max()) &
-                           (speed_rad_s >= config.minimum_speed_rad_s) &
-                           is_usable_torque(channel.measured_torque_Nm[start + k + i]);
-      samples[i] += teaches ? Real(1) : Real(0);
-      travel_rad[i] += teaches ? speed_rad_s * config.sample_period_s : Real(0);
-    }
-  }
-  OscillatorMemory learned;
-  for (std::size_t i = 0; i < sums; ++i) {
-    learned.samples += static_cast<double>(samples[i]);
-    learned.travel_rad += static_cast<double>(travel_rad[i]);
-  }
-  return learned;
-}
-
 /// Samples before `start` from which a filter has learned enough; `start` where the log begins
-/// before that.
+/// before that.  Standstill and unusable samples teach nothing and are passed over.
 template <class Real, std::size_t MaxOrders>
 [[nodiscard]] inline std::size_t warm_up_before(
     const OscillatorFilterConfig<Real, MaxOrders>& config, const OscillatorChannel<Real>& channel,
     std::size_t start, double memories) {
   const OscillatorMemory memory = memory_of(config);
-  OscillatorMemory learned;
+  double samples = 0.0;
+  double travel_rad = 0.0;
   std::size_t k = start;
-  // In long strides first, and sample by sample within the last of them.
-  for (std::size_t stride = tile_samples; k > 0;) {
-    stride = k < stride ? 1 : stride;
-    const OscillatorMemory more = learned_from(config, channel, k - stride, stride);
-    const bool is_enough = learned.samples + more.samples >= memories * memory.samples &&
-                           learned.travel_rad + more.travel_rad >= memories * memory.travel_rad;
-    if (is_enough && stride > 1) {
-      stride = 1;
-      continue;
-    }
-    learned.samples += more.samples;
-    learned.travel_rad += more.travel_rad;
-    k -= stride;
-    if (is_enough) {
-      break;
+  while (k > 0 &&
+         (samples < memories * memory.samples || travel_rad < memories * memory.travel_rad)) {
+    --k;
+    const Real speed_rad_s = absolute(channel.motor_speed_rad_s[k]);
+    if (speed_rad_s <= std::numeric_limits<Real>::max() &&
+        speed_rad_s >= config.minimum_speed_rad_s &&
+        is_usable_torque(channel.measured_torque_Nm[k])) {
+      samples += 1.0;
+      travel_rad += static_cast<double>(speed_rad_s * config.sample_period_s);
     }
   }
   return start - k;

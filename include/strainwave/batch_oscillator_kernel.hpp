@@ -415,7 +415,7 @@ STRAINWAVE_KERNEL std::size_t filter_usual(OscillatorLanes<Real, Orders>& memory
   using L = Lanes<Real>;
   constexpr auto by_order = std::make_index_sequence<Orders>{};
   const OscillatorPlace<Real> place{tile, lane};
-  OscillatorGroup<Real, Orders, SecondIsDouble> group;
+  OscillatorGroup<Real, Orders, SecondIsDouble> group;  // NOLINT(*-member-init): load() fills it
   group.load(memory, lane);
   if (!group.is_usual_rotation(memory, lane, group.pending_rad).all()) {
     return start;

@@ -89,36 +89,6 @@ TEST(BatchLong, WarmUpPassesOverStandstillAndUnusableSamples) {
   EXPECT_EQ(warm_up(), 15'000U);
 }
 
-TEST(BatchLong, WarmUpCountedInStridesIsThatCountedSampleBySample) {
-  BatchConfig<float> config = joint_of_log();
-  config.minimum_speed_rad_s = 5.0F;
-  const strainwave::detail::OscillatorMemory memory = strainwave::detail::memory_of(config);
-  for (std::size_t number = 0; number < 8; ++number) {
-    Log<float> log = wild_log<float>(number, 9'000);
-    const OscillatorChannel<float> channel = log.channel();
-    for (const std::size_t start : {std::size_t{63}, std::size_t{1000}, std::size_t{8999}}) {
-      const double memories = 0.5 * static_cast<double>(1 + number);
-      double samples = 0.0;
-      double travel_rad = 0.0;
-      std::size_t k = start;
-      while (k > 0 &&
-             (samples < memories * memory.samples || travel_rad < memories * memory.travel_rad)) {
-        --k;
-        const float speed_rad_s = std::fabs(log.speed_rad_s[k]);
-        if (std::isfinite(speed_rad_s) && speed_rad_s >= 5.0F &&
-            std::fabs(log.torque_Nm[k]) <= 1e15F) {
-          samples += 1.0;
-          travel_rad += static_cast<double>(speed_rad_s * config.sample_period_s);
-        }
-      }
-      EXPECT_NEAR(
-          static_cast<double>(strainwave::detail::warm_up_before(config, channel, start, memories)),
-          static_cast<double>(start - k), 1.0)
-          << number << ", " << start;
-    }
-  }
-}
-
 TEST(BatchLong, ChunksAreTheSequenceWithinTheReportedDifference) {
   const BatchConfig<float> config = joint_of_log();
   const Log<float> log = wild_log<float>(1, log_samples);
