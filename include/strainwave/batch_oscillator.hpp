@@ -16,6 +16,9 @@
 #include "strainwave/oscillator_filter.hpp"
 
 #if STRAINWAVE_HAS_LANES
+#define STRAINWAVE_LEVEL_FILE "strainwave/batch_oscillator_group.hpp"
+#include "strainwave/lanes_each_level.hpp"
+#undef STRAINWAVE_LEVEL_FILE
 #define STRAINWAVE_LEVEL_FILE "strainwave/batch_oscillator_kernel.hpp"
 #include "strainwave/lanes_each_level.hpp"
 #undef STRAINWAVE_LEVEL_FILE
