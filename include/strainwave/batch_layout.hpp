@@ -29,6 +29,14 @@ struct alignas(64) Tile {
   Real values[tile_samples * block_width<Real>];
 };
 
+namespace detail {
+
+/// A row of zeros, for what a recording does not have.
+template <class Real>
+inline constexpr Real zero_row[block_width<Real>] = {};
+
+}  // namespace detail
+
 /// Arrays of a block's channels that are read or written a tile ahead.  There are more of them than
 /// the processor foresees on its own, and asking for all at once would make it wait.
 template <class Number>

@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file batch_long.hpp
-/// One long log on lanes and threads: time chunks, each warmed up on the samples before it.
-///
-/// A Kalman filter forgets where it started.  A chunk starts early, by several memories of the
-/// filter; at each boundary its state is held against the one in which the chunk before ended, and
-/// a chunk that differs too much is filtered again in sequence.
+/// One long log through the published filter, on lanes and threads: where its chunks begin, and how
+/// early.
 #pragma once
 
 #include <algorithm>
@@ -14,35 +11,9 @@
 #include <vector>
 
 #include "strainwave/batch.hpp"
+#include "strainwave/batch_time_chunks.hpp"
 
 namespace strainwave {
-
-/// How much more than the ripple a single state may differ at a boundary.  A state that is hardly
-/// seen may be some way off: what matters of it is in the ripple.
-inline constexpr double state_tolerance_ratio = 100.0;
-
-struct LongOptions {
-  BatchOptions batch = {};
-  bool in_sequence = false;  ///< exactly as step() does it, sample after sample
-  /// Memories of the filter that a chunk is warmed up by; what is left of a wrong start falls by
-  /// a factor of e with each.
-  double warm_up_memories = 16.0;
-  /// Difference of the predicted ripple at a boundary beyond which the chunk after it is filtered
-  /// again in sequence.
-  double tolerance_Nm = 1e-4;
-  double state_tolerance_Nm = state_tolerance_ratio * 1e-4;  ///< likewise of any single state
-};
-
-/// What process_long() did, and how far from a filter in sequence it came out.
-struct LongReport {
-  std::size_t chunk_count = 1;      ///< 1: in sequence
-  std::size_t repeated_chunks = 0;  ///< filtered again in sequence, because they differed too much
-  std::size_t warm_up_samples = 0;  ///< filtered twice
-  /// Differences at the boundaries that were kept; a repeated chunk begins without one.
-  double largest_ripple_difference_Nm = 0.0;
-  double rms_ripple_difference_Nm = 0.0;
-  double largest_state_difference_Nm = 0.0;
-};
 
 namespace detail {
 
@@ -115,16 +86,6 @@ template <class Real>
           .status = from(channel.status)};
 }
 
-/// A chunk of a long log.
-template <class Real, std::size_t MaxOrders>
-struct Chunk {
-  std::size_t start = 0;
-  std::size_t count = 0;
-  std::size_t warm_up = 0;
-  OscillatorFilterState<Real, MaxOrders> began;
-  OscillatorFilterState<Real, MaxOrders> ended;
-};
-
 /// Samples before the first whole line of the cache.
 template <class Real>
 [[nodiscard]] inline std::size_t samples_to_a_line(const Real* samples) {
@@ -138,7 +99,7 @@ template <class Real>
 /// lines is read twice.  Where a warm-up would take longer than a chunk there is no
 /// boundary: nothing would be won.
 template <class Real, std::size_t MaxOrders>
-[[nodiscard]] inline std::vector<Chunk<Real, MaxOrders>> chunks_of(
+[[nodiscard]] inline std::vector<TimeChunk<OscillatorFilterState<Real, MaxOrders>>> chunks_of(
     const OscillatorFilterConfig<Real, MaxOrders>& config, const OscillatorChannel<Real>& channel,
     std::size_t count, const LongOptions& options) {
   // Whole lines of the cache, and an odd number of them, so that chunks do not meet in one set.
@@ -150,7 +111,7 @@ template <class Real, std::size_t MaxOrders>
   for_each_part(warm_ups.size(), options.batch.thread_count, [&](std::size_t i) {
     warm_ups[i] = warm_up_before(config, channel, first + i * length, options.warm_up_memories);
   });
-  std::vector<Chunk<Real, MaxOrders>> chunks(1);
+  std::vector<TimeChunk<OscillatorFilterState<Real, MaxOrders>>> chunks(1);
   for (std::size_t i = 0; i < warm_ups.size(); ++i) {
     if (warm_ups[i] <= length) {
       const std::size_t start = first + i * length;
@@ -165,11 +126,6 @@ template <class Real, std::size_t MaxOrders>
 }
 
 /// How far two states of the same filter lie apart, in the paper's frame.
-struct StateDifference {
-  double ripple_Nm = 0.0;
-  double state_Nm = 0.0;  ///< of the state that differs most
-};
-
 template <class Real, std::size_t MaxOrders>
 [[nodiscard]] inline StateDifference difference_of(
     const OscillatorFilterConfig<Real, MaxOrders>& config,
@@ -187,79 +143,6 @@ template <class Real, std::size_t MaxOrders>
   difference.ripple_Nm = absolute(difference.ripple_Nm);
   return difference;
 }
-
-/// A block of chunks: warmed up without a result, then filtered.
-template <class Real, std::size_t MaxOrders>
-inline void filter_chunks(const OscillatorFilterConfig<Real, MaxOrders>& config,
-                          const OscillatorChannel<Real>& channel, VectorLevel level,
-                          Chunk<Real, MaxOrders>* chunks, std::size_t count) {
-  OscillatorBlock<Real, MaxOrders> block;
-  for (std::size_t lane = 0; lane < count; ++lane) {
-    Chunk<Real, MaxOrders>& chunk = chunks[lane];
-    block.configs[lane] = &config;
-    block.states[lane] = &chunk.began;
-    block.channels[lane] = part_of(channel, chunk.start - chunk.warm_up, chunk.warm_up);
-    block.channels[lane].torque_Nm = nullptr;
-    block.channels[lane].ripple_Nm = nullptr;
-    block.channels[lane].status = nullptr;
-  }
-  filter_block(kind_of(config), level, block);
-  for (std::size_t lane = 0; lane < count; ++lane) {
-    Chunk<Real, MaxOrders>& chunk = chunks[lane];
-    chunk.began.counters = {};
-    chunk.ended = chunk.began;
-    block.states[lane] = &chunk.ended;
-    block.channels[lane] = part_of(channel, chunk.start, chunk.count);
-  }
-  filter_block(kind_of(config), level, block);
-}
-
-/// Adds the counts of a part of a recording.
-constexpr void add_counts(EventCounters& counters, const EventCounters& of_part) {
-  count_up_by(counters.samples, of_part.samples);
-  count_up_by(counters.faults, of_part.faults);
-  for (std::size_t bit = 0; bit < 32; ++bit) {
-    count_up_by(counters.by_bit[bit], of_part.by_bit[bit]);
-  }
-}
-
-/// Holds each chunk's beginning against the end of the one before, and filters it again where they
-/// differ too much.
-template <class Real, std::size_t MaxOrders>
-inline LongReport join_chunks(const OscillatorFilterConfig<Real, MaxOrders>& config,
-                              const OscillatorChannel<Real>& channel, const LongOptions& options,
-                              std::vector<Chunk<Real, MaxOrders>>& chunks) {
-  LongReport report;
-  report.chunk_count = chunks.size();
-  double squares_Nm2 = 0.0;
-  for (std::size_t i = 1; i < chunks.size(); ++i) {
-    Chunk<Real, MaxOrders>& chunk = chunks[i];
-    report.warm_up_samples += chunk.warm_up;
-    const StateDifference apart = difference_of(config, chunk.began, chunks[i - 1].ended);
-    const bool is_close = apart.ripple_Nm <= options.tolerance_Nm &&
-                          apart.state_Nm <= options.state_tolerance_Nm;  // and not NaN
-    if (!is_close) {
-      ++report.repeated_chunks;
-      chunk.ended = chunks[i - 1].ended;
-      chunk.ended.counters = {};
-      filter_one(config, chunk.ended, part_of(channel, chunk.start, chunk.count));
-      continue;
-    }
-    report.largest_ripple_difference_Nm =
-        std::max(report.largest_ripple_difference_Nm, apart.ripple_Nm);
-    report.largest_state_difference_Nm =
-        std::max(report.largest_state_difference_Nm, apart.state_Nm);
-    squares_Nm2 += apart.ripple_Nm * apart.ripple_Nm;
-  }
-  const std::size_t kept = chunks.size() - 1 - report.repeated_chunks;
-  if (kept > 0) {
-    report.rms_ripple_difference_Nm = square_root(squares_Nm2 / static_cast<double>(kept));
-  }
-  return report;
-}
-
-/// Blocks for each thread: threads that were held up leave work to the others.
-inline constexpr std::size_t blocks_per_thread = 2;
 
 /// The shortest of the warm-ups in a log's quarters: a long one is a standstill's.
 template <class Real, std::size_t MaxOrders>
@@ -296,6 +179,33 @@ template <class Real, std::size_t MaxOrders>
   return count < fewest_chunks ? 1 : count;
 }
 
+/// What filter_in_chunks() asks of a filter.
+template <class Real, std::size_t MaxOrders>
+struct OscillatorLog {
+  using Config = OscillatorFilterConfig<Real, MaxOrders>;
+  using State = OscillatorFilterState<Real, MaxOrders>;
+  using Channel = OscillatorChannel<Real>;
+  using Block = OscillatorBlock<Real, MaxOrders>;
+
+  static Channel part_of(const Channel& channel, std::size_t start, std::size_t count) {
+    return detail::part_of(channel, start, count);
+  }
+  static void clear_results(Channel& channel) {
+    channel.torque_Nm = nullptr;
+    channel.ripple_Nm = nullptr;
+    channel.status = nullptr;
+  }
+  static void filter_block(VectorLevel level, const Block& block) {
+    detail::filter_block(kind_of(*block.configs[0]), level, block);
+  }
+  static void filter_one(const Config& config, State& state, const Channel& channel) {
+    detail::filter_one(config, state, channel);
+  }
+  static StateDifference difference_of(const Config& config, const State& a, const State& b) {
+    return detail::difference_of(config, a, b);
+  }
+};
+
 }  // namespace detail
 
 /// Filters one long log.  The state goes on as after step() with the last sample.
@@ -304,33 +214,12 @@ LongReport process_long(const OscillatorFilterConfig<Real, MaxOrders>& config,
                         OscillatorFilterState<Real, MaxOrders>& state,
                         const OscillatorChannel<Real>& channel, const LongOptions& options = {}) {
   const std::size_t count = detail::chunk_count_for(config, channel, options);
-  std::vector<detail::Chunk<Real, MaxOrders>> chunks;
+  std::vector<detail::TimeChunk<OscillatorFilterState<Real, MaxOrders>>> chunks;
   if (count > 1) {
     chunks = detail::chunks_of(config, channel, count, options);
   }
-  if (chunks.size() < 2) {
-    detail::filter_one(config, state, channel);
-    return {};
-  }
-  for (auto& chunk : chunks) {
-    // A warm-up that begins with the log begins with its state.
-    chunk.began = chunk.warm_up == chunk.start ? state : initial_state(config);
-  }
-  constexpr std::size_t width = block_width<Real>;
-  const std::size_t blocks = (chunks.size() + width - 1) / width;
-  detail::for_each_part(blocks, options.batch.thread_count, [&](std::size_t block) {
-    const std::size_t first = block * width;
-    detail::filter_chunks(config, channel, options.batch.level, chunks.data() + first,
-                          std::min(width, chunks.size() - first));
-  });
-  const LongReport report = detail::join_chunks(config, channel, options, chunks);
-  EventCounters counters = state.counters;
-  for (const auto& chunk : chunks) {
-    detail::add_counts(counters, chunk.ended.counters);
-  }
-  state = chunks.back().ended;
-  state.counters = counters;
-  return report;
+  return detail::filter_in_chunks<detail::OscillatorLog<Real, MaxOrders>>(config, state, channel,
+                                                                          options, chunks);
 }
 
 }  // namespace strainwave

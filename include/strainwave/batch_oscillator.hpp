@@ -41,10 +41,6 @@ struct OscillatorChannel {
 
 namespace detail {
 
-/// A row of zeros, for what a recording does not have.
-template <class Real>
-inline constexpr Real zero_row[block_width<Real>] = {};
-
 template <class Real, std::size_t Orders>
 using TileKernel = void (*)(OscillatorLanes<Real, Orders>&, const OscillatorTile<Real>&);
 
@@ -76,6 +72,7 @@ struct OscillatorKind {
   std::size_t orders = 0;  ///< capacity of the kernel; 0: none, one by one
   bool second_is_double = false;
 
+  [[nodiscard]] constexpr bool has_kernel() const { return orders != 0; }
   [[nodiscard]] constexpr auto operator<=>(const OscillatorKind&) const = default;
 };
 

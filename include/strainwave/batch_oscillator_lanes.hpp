@@ -201,12 +201,6 @@ inline void take_state(const OscillatorLanes<Real, Orders>& lanes, std::size_t l
   state.last_torque_Nm = lanes.last_torque_Nm[lane];
 }
 
-/// Adds to a counter that stays at its largest value instead of wrapping.
-constexpr void count_up_by(std::uint32_t& counter, std::size_t events) {
-  const std::size_t room = 0xFFFFFFFFU - counter;
-  counter += static_cast<std::uint32_t>(events < room ? events : room);
-}
-
 /// Adds a lane's counts of `samples` samples to its counters.
 template <class Real, std::size_t Orders>
 inline void take_counts(const OscillatorLanes<Real, Orders>& lanes, std::size_t lane,

@@ -11,7 +11,6 @@
 #include <cstdint>
 #include <memory>
 
-#include "strainwave/batch.hpp"
 #include "strainwave/batch_layout.hpp"
 #include "strainwave/batch_ripple_angles.hpp"
 #include "strainwave/batch_ripple_channel.hpp"
@@ -346,26 +345,33 @@ inline void run_ripple_block(const RippleKind& kind, VectorLevel level,
   std::make_unique<Run>(block, kind, ripple_kernel<Real, Pairs>(level))->run();
 }
 
-/// A block through its channels' recordings, at a vector level.
+/// A block through its channels' recordings, at a vector level; one by one where there is no
+/// kernel.
 template <class Real, std::size_t MaxPairs>
 inline void filter_block(const RippleKind& kind, VectorLevel level,
                          const RippleBlock<Real, MaxPairs>& block) {
-  if (kind.pairs == 3) {
-    run_ripple_block<Real, 3>(kind, level, block);
+  const std::size_t pairs = is_available(level) ? kind.pairs : 0;
+  if (pairs == 3) {
+    return run_ripple_block<Real, 3>(kind, level, block);
   }
   if constexpr (MaxPairs > 3) {
-    if (kind.pairs == 5) {
-      run_ripple_block<Real, 5>(kind, level, block);
+    if (pairs == 5) {
+      return run_ripple_block<Real, 5>(kind, level, block);
     }
   }
   if constexpr (MaxPairs > 5) {
-    if (kind.pairs == 7) {
-      run_ripple_block<Real, 7>(kind, level, block);
+    if (pairs == 7) {
+      return run_ripple_block<Real, 7>(kind, level, block);
     }
   }
   if constexpr (MaxPairs > 7) {
-    if (kind.pairs == most_lane_pairs) {
-      run_ripple_block<Real, most_lane_pairs>(kind, level, block);
+    if (pairs == most_lane_pairs) {
+      return run_ripple_block<Real, most_lane_pairs>(kind, level, block);
+    }
+  }
+  for (std::size_t lane = 0; lane < block.width; ++lane) {
+    if (block.configs[lane] != nullptr) {
+      filter_one(*block.configs[lane], *block.states[lane], block.channels[lane]);
     }
   }
 }

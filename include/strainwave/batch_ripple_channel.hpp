@@ -49,6 +49,7 @@ struct RippleKind {
   std::size_t order_count = 0;
   RippleOrderLayout orders[most_lane_pairs] = {};
 
+  [[nodiscard]] constexpr bool has_kernel() const { return pairs != 0; }
   [[nodiscard]] constexpr auto operator<=>(const RippleKind&) const = default;
 };
 

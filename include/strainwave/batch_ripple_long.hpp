@@ -1,19 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 /// @file batch_ripple_long.hpp
-/// One long log through the ripple filter, on lanes and threads: time chunks, each warmed up on the
-/// samples before it.
-///
-/// The filter forgets by travelled angle: a chunk starts early, by several memories.  At each
-/// boundary its state is held against the one in which the chunk before ended, and a chunk that
-/// differs too much is filtered again in sequence.
+/// One long log through the ripple filter, on lanes and threads: where its chunks begin, and how
+/// early.  The filter forgets by travelled angle.
 #pragma once
 
 #include <algorithm>
 #include <cstddef>
+#include <iterator>
 #include <vector>
 
-#include "strainwave/batch_long.hpp"
 #include "strainwave/batch_ripple.hpp"
+#include "strainwave/batch_time_chunks.hpp"
 
 namespace strainwave {
 
@@ -69,23 +66,13 @@ template <class Real>
   return part;
 }
 
-/// A chunk of a long log.
-template <class Real, std::size_t MaxPairs>
-struct RippleChunk {
-  std::size_t start = 0;
-  std::size_t count = 0;
-  std::size_t warm_up = 0;
-  RippleFilterState<Real, MaxPairs> began;
-  RippleFilterState<Real, MaxPairs> ended;
-};
-
 /// Chunks of about equal length.  Where a warm-up and its chunk would be longer than half of the
 /// log there is no boundary: nothing would be won.
 template <class Real, std::size_t MaxPairs>
-[[nodiscard]] inline std::vector<RippleChunk<Real, MaxPairs>> ripple_chunks(
+[[nodiscard]] inline std::vector<TimeChunk<RippleFilterState<Real, MaxPairs>>> ripple_chunks(
     const RippleFilterConfig<Real, MaxPairs>& config, const RippleChannel<Real>& channel,
     std::size_t count, double memories) {
-  std::vector<RippleChunk<Real, MaxPairs>> chunks(1);
+  std::vector<TimeChunk<RippleFilterState<Real, MaxPairs>>> chunks(1);
   const std::size_t length = (channel.sample_count + count - 1) / count;
   for (std::size_t start = length; start < channel.sample_count; start += length) {
     const std::size_t warm_up = warm_up_before(config, channel, start, memories);
@@ -127,69 +114,6 @@ template <class Real, std::size_t MaxPairs>
   return difference;
 }
 
-/// A block of chunks: warmed up without a result, then filtered.
-template <class Real, std::size_t MaxPairs>
-inline void filter_chunks(const RippleFilterConfig<Real, MaxPairs>& config,
-                          const RippleChannel<Real>& channel, VectorLevel level,
-                          RippleChunk<Real, MaxPairs>* chunks, std::size_t count) {
-  const RippleKind kind = kind_of(config);
-  RippleBlock<Real, MaxPairs> block;
-  for (std::size_t lane = 0; lane < count; ++lane) {
-    RippleChunk<Real, MaxPairs>& chunk = chunks[lane];
-    block.configs[lane] = &config;
-    block.states[lane] = &chunk.began;
-    RippleChannel<Real>& before = block.channels[lane];
-    before = part_of(channel, chunk.start - chunk.warm_up, chunk.warm_up);
-    before.status = nullptr;
-    std::fill(std::begin(before.outputs), std::end(before.outputs), nullptr);
-  }
-  filter_block(kind, level, block);
-  for (std::size_t lane = 0; lane < count; ++lane) {
-    RippleChunk<Real, MaxPairs>& chunk = chunks[lane];
-    chunk.began.counters = {};
-    chunk.ended = chunk.began;
-    block.states[lane] = &chunk.ended;
-    block.channels[lane] = part_of(channel, chunk.start, chunk.count);
-  }
-  filter_block(kind, level, block);
-}
-
-/// Holds each chunk's beginning against the end of the one before, and filters it again where they
-/// differ too much.
-template <class Real, std::size_t MaxPairs>
-inline LongReport join_chunks(const RippleFilterConfig<Real, MaxPairs>& config,
-                              const RippleChannel<Real>& channel, const LongOptions& options,
-                              std::vector<RippleChunk<Real, MaxPairs>>& chunks) {
-  LongReport report;
-  report.chunk_count = chunks.size();
-  double squares_Nm2 = 0.0;
-  for (std::size_t i = 1; i < chunks.size(); ++i) {
-    RippleChunk<Real, MaxPairs>& chunk = chunks[i];
-    report.warm_up_samples += chunk.warm_up;
-    const StateDifference apart = difference_of(config, chunk.began, chunks[i - 1].ended);
-    // In this way round, so that what is no number is no agreement.
-    const bool agrees =
-        apart.ripple_Nm <= options.tolerance_Nm && apart.state_Nm <= options.state_tolerance_Nm;
-    if (!agrees) {
-      ++report.repeated_chunks;
-      chunk.ended = chunks[i - 1].ended;
-      chunk.ended.counters = {};
-      filter_one(config, chunk.ended, part_of(channel, chunk.start, chunk.count));
-      continue;
-    }
-    report.largest_ripple_difference_Nm =
-        std::max(report.largest_ripple_difference_Nm, apart.ripple_Nm);
-    report.largest_state_difference_Nm =
-        std::max(report.largest_state_difference_Nm, apart.state_Nm);
-    squares_Nm2 += apart.ripple_Nm * apart.ripple_Nm;
-  }
-  const std::size_t kept = chunks.size() - 1 - report.repeated_chunks;
-  if (kept > 0) {
-    report.rms_ripple_difference_Nm = square_root(squares_Nm2 / static_cast<double>(kept));
-  }
-  return report;
-}
-
 /// How many chunks a log is cut into; 1 where it is filtered in sequence.  Lanes take their chunks
 /// side by side, so that warm-ups may be longer than chunks as long as both together are short
 /// beside the log.
@@ -215,6 +139,32 @@ template <class Real, std::size_t MaxPairs>
   return length + warm_up <= channel.sample_count / 2 ? channel.sample_count / length : 1;
 }
 
+/// What filter_in_chunks() asks of a filter.
+template <class Real, std::size_t MaxPairs>
+struct RippleLog {
+  using Config = RippleFilterConfig<Real, MaxPairs>;
+  using State = RippleFilterState<Real, MaxPairs>;
+  using Channel = RippleChannel<Real>;
+  using Block = RippleBlock<Real, MaxPairs>;
+
+  static Channel part_of(const Channel& channel, std::size_t start, std::size_t count) {
+    return detail::part_of(channel, start, count);
+  }
+  static void clear_results(Channel& channel) {
+    channel.status = nullptr;
+    std::fill(std::begin(channel.outputs), std::end(channel.outputs), nullptr);
+  }
+  static void filter_block(VectorLevel level, const Block& block) {
+    detail::filter_block(kind_of(*block.configs[0]), level, block);
+  }
+  static void filter_one(const Config& config, State& state, const Channel& channel) {
+    detail::filter_one(config, state, channel);
+  }
+  static StateDifference difference_of(const Config& config, const State& a, const State& b) {
+    return detail::difference_of(config, a, b);
+  }
+};
+
 }  // namespace detail
 
 /// Filters one long log.  The state goes on as after step() with the last sample.
@@ -223,33 +173,12 @@ LongReport process_long(const RippleFilterConfig<Real, MaxPairs>& config,
                         RippleFilterState<Real, MaxPairs>& state,
                         const RippleChannel<Real>& channel, const LongOptions& options = {}) {
   const std::size_t count = detail::chunk_count_for(config, channel, options);
-  std::vector<detail::RippleChunk<Real, MaxPairs>> chunks;
+  std::vector<detail::TimeChunk<RippleFilterState<Real, MaxPairs>>> chunks;
   if (count > 1) {
     chunks = detail::ripple_chunks(config, channel, count, options.warm_up_memories);
   }
-  if (chunks.size() < 2) {
-    detail::filter_one(config, state, channel);
-    return {};
-  }
-  for (auto& chunk : chunks) {
-    // A warm-up that begins with the log begins with its state.
-    chunk.began = chunk.warm_up == chunk.start ? state : initial_state(config);
-  }
-  constexpr std::size_t width = block_width<Real>;
-  const std::size_t blocks = (chunks.size() + width - 1) / width;
-  detail::for_each_part(blocks, options.batch.thread_count, [&](std::size_t block) {
-    const std::size_t first = block * width;
-    detail::filter_chunks(config, channel, options.batch.level, chunks.data() + first,
-                          std::min(width, chunks.size() - first));
-  });
-  const LongReport report = detail::join_chunks(config, channel, options, chunks);
-  EventCounters counters = state.counters;
-  for (const auto& chunk : chunks) {
-    detail::add_counts(counters, chunk.ended.counters);
-  }
-  state = chunks.back().ended;
-  state.counters = counters;
-  return report;
+  return detail::filter_in_chunks<detail::RippleLog<Real, MaxPairs>>(config, state, channel,
+                                                                     options, chunks);
 }
 
 }  // namespace strainwave

@@ -60,6 +60,12 @@ constexpr void count_up(std::uint32_t& counter) {
   }
 }
 
+/// Adds to a counter that stays at its largest value instead of wrapping.
+constexpr void count_up_by(std::uint32_t& counter, std::size_t events) {
+  const std::size_t room = 0xFFFFFFFFU - counter;
+  counter += static_cast<std::uint32_t>(events < room ? events : room);
+}
+
 /// Number of the lowest bit that is set; not for 0.
 [[nodiscard]] constexpr std::size_t lowest_bit(Status status) {
 #if defined(__GNUC__)
