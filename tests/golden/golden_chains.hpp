@@ -129,6 +129,10 @@ class Chain {
       : config_(strainwave::converted<Real, gauge_count, 9>(told())),
         state_(strainwave::initial_state(config_)) {}
 
+  [[nodiscard]] const Config& config() const { return config_; }
+  [[nodiscard]] const strainwave::RippleSensorState<Real, gauge_count, 9>& state() const {
+    return state_;
+  }
   [[nodiscard]] static Double told() {
     auto config = sensor_config<Double>();
     config.filter = ripple_config<double, 9>(true, true, false);
