@@ -51,6 +51,7 @@ def main() -> int:
 
     from benchmarks.accuracy.bench import run_bench  # noqa: PLC0415
     from benchmarks.accuracy.figures import error_figure, kuka_figure  # noqa: PLC0415
+    from benchmarks.accuracy.path_table import markdown_of, path_table  # noqa: PLC0415
     from benchmarks.accuracy.recordings import (  # noqa: PLC0415
         ENVIRONMENT_VARIABLE,
         recordings_folder,
@@ -76,6 +77,7 @@ def main() -> int:
     console.print(phase_table(results))
     console.print(memory_table(results))
     console.print(coverage_table(results))
+    console.print(path_table(results))
     console.print(main_table(results))
     console.print(target_table(found))
     if results["recordings"] is None:
@@ -91,12 +93,13 @@ def main() -> int:
     options.out.mkdir(parents=True, exist_ok=True)
     text = json.dumps(rounded(results), indent=1, allow_nan=False) + "\n"
     (options.out / "accuracy.json").write_text(text, encoding="utf-8")
-    for name, svg in (
+    for name, content in (
         ("accuracy-error.svg", error_figure(results)),
         ("accuracy-med7.svg", kuka_figure(results)),
+        ("accuracy-paths.md", markdown_of(results)),
     ):
-        if svg is not None:
-            (options.out / name).write_text(svg, encoding="utf-8")
+        if content is not None:
+            (options.out / name).write_text(content, encoding="utf-8")
     console.print(f"{options.out} written after {time.monotonic() - started_s:.0f} s")
     return 0
 

@@ -17,9 +17,11 @@ from benchmarks.accuracy.evaluation import SEEDS, Score, choose_tuning, score
 from benchmarks.accuracy.joint import make_joint, simulate
 from benchmarks.accuracy.kuka import JOINTS, read_kuka_joint, score_on_kuka
 from benchmarks.accuracy.methods.catalogue import BY_NAME, METHODS
-from benchmarks.accuracy.methods.ours import BY_MEMORY, KUKA_GRID, OURS
+from benchmarks.accuracy.methods.ours import BY_MEMORY, IN_LANES, KUKA_GRID, OURS
+from benchmarks.accuracy.methods.published import PUBLISHED_TUNED
 from benchmarks.accuracy.other_recordings import run_through
 from benchmarks.accuracy.pass_through import FREQUENCIES_HZ, fidelity
+from benchmarks.accuracy.paths import PRECISIONS, SETS, scores_in_chunks, scores_in_lanes
 from benchmarks.accuracy.ripple import RIGHT, SCENARIOS
 from strainwave.errors import InputError
 
@@ -72,6 +74,16 @@ def run_bench(folder: Path, processes: int) -> dict[str, Any]:
             )
             for tuning in BY_MEMORY
         ]
+        by_path = [
+            pool.submit(scores_of, name, tunings_by_set, precision)
+            for name, tunings_by_set in (
+                (OURS.name, {s: chosen[OURS.name, s] for s in SETS}),
+                (OURS.name, dict.fromkeys(SETS, IN_LANES)),
+                (PUBLISHED_TUNED.name, {s: chosen[PUBLISHED_TUNED.name, s] for s in SETS}),
+            )
+            for precision in PRECISIONS
+            for scores_of in (scores_in_lanes, scores_in_chunks)
+        ]
         residuals = {
             scenario: [basis_residual_percent(simulate(make_joint(scenario, s))) for s in SEEDS]
             for scenario in SCENARIOS
@@ -108,6 +120,7 @@ def run_bench(folder: Path, processes: int) -> dict[str, Any]:
                 for tuning, scored, passed in by_memory
             ],
             "coverage_percent": covered.result(),
+            "paths": [_plain(asdict(each)) for future in by_path for each in future.result()],
             "recordings": real.result(),
         }
 

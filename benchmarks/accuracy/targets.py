@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Final
 
 from benchmarks.accuracy.basis import LEAST_RESIDUAL_PERCENT
+from benchmarks.accuracy.joint import FULL_SCALE_NM
 from benchmarks.accuracy.kuka import JOINTS
 from benchmarks.accuracy.methods.ours import KUKA_GENTLE_TURNS, KUKA_STRONG_TURNS, OURS
 from benchmarks.accuracy.ripple import MISMATCH, RIGHT, SCENARIOS, TEETH
@@ -14,6 +15,12 @@ from benchmarks.accuracy.ripple import MISMATCH, RIGHT, SCENARIOS, TEETH
 #: Attenuation of order 2, dB, that must be passed at no more than this error, %: joints 1 to 4.
 KUKA_STRONG: Final = ((15.0, 4.0), (19.0, 8.0), (16.5, 4.0), (19.0, 4.5))
 KUKA_GENTLE: Final = ((10.5, 2.0), (12.5, 4.0), (10.5, 2.0), (13.0, 2.0))
+#: Mean error over the phases, %FS.
+MOST_ERROR_PERCENT: Final = {RIGHT: 0.11, MISMATCH: 0.17}
+#: What a path may change of an error in any phase: less than any table shows.
+MOST_CHANGE_PERCENT: Final = 0.0005
+#: What a torque may differ on a path: as much as the golden vectors' float may be off double.
+MOST_FURTHEST_PERCENT: Final = 0.01
 #: Change of power more than 0.3 order beside the removed lines.
 MOST_OUTSIDE_DB: Final = 0.3
 
@@ -71,7 +78,7 @@ def targets(results: Mapping[str, Any]) -> list[Target]:
         Target("least basis residual with mismatch, %FS", residual, LEAST_RESIDUAL_PERCENT, True),
         *(
             Target(f"mean error, {s}, %FS", scenarios[s]["error_percent"]["mean"], limit, False)
-            for s, limit in ((RIGHT, 0.11), (MISMATCH, 0.17))
+            for s, limit in MOST_ERROR_PERCENT.items()
         ),
         *(
             Target(
@@ -92,12 +99,58 @@ def targets(results: Mapping[str, Any]) -> list[Target]:
         ),
         Target("power outside the lines, dB", abs(right["outside_dB"]), MOST_OUTSIDE_DB, False),
     ]
+    found += path_targets(results["paths"])
     if results["recordings"] is not None:
         found += _kuka_targets(results["recordings"]["kuka"])
         through = results["recordings"]["run_through"]
         share = sum(each["finite"] for each in through) / len(through)
         found.append(Target("other recordings run through, share", share, 1, True))
     return found
+
+
+def path_targets(scores: Sequence[Mapping[str, Any]]) -> list[Target]:
+    """Put the figures of every path through the core beside their limits.
+
+    Parameters
+    ----------
+    scores : sequence of mapping
+        Fields of `benchmarks.accuracy.paths.PathScore`.
+
+    Returns
+    -------
+    list of Target
+        Errors of the default filter as everywhere; differences from step by step of both filters.
+    """
+    taken = [score for score in scores if not score["refused"]]
+    ours = [score for score in taken if score["method"] == OURS.name]
+    furthest_percent = 100 * max(score["furthest_Nm"] for score in taken) / FULL_SCALE_NM
+    return [
+        *(
+            Target(
+                f"mean error, {s}, worst of all paths, %FS",
+                max(score["error_percent"][s] for score in ours),
+                limit,
+                False,
+            )
+            for s, limit in MOST_ERROR_PERCENT.items()
+        ),
+        Target(
+            "change of an error by a path, %FS",
+            max(score["change_percent"] for score in taken),
+            MOST_CHANGE_PERCENT,
+            False,
+        ),
+        Target(
+            "furthest sample from step by step, %FS", furthest_percent, MOST_FURTHEST_PERCENT, False
+        ),
+        Target(
+            "samples with another status than step by step",
+            sum(score["other_statuses"] for score in taken),
+            0,
+            False,
+        ),
+        Target("paths that refuse a filter", len(scores) - len(taken), 0, False),
+    ]
 
 
 def gain_error_percent(passing: Mapping[str, Any]) -> float:

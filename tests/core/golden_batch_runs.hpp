@@ -34,7 +34,7 @@ template <class Real, std::size_t MaxOrders>
   return {.sample_count = signals.size(),
           .measured_torque_Nm = signals.measured_Nm.data(),
           .motor_speed_rad_s = signals.speed_rad_s.data(),
-          .motor_angle_rad = nullptr,
+          .motor_angle_rad = signals.angle_rad.data(),
           .expected_torque_Nm = signals.expected_Nm.data(),
           .torque_Nm = outputs.torque_Nm.data(),
           .ripple_Nm = outputs.ripple_Nm.data(),

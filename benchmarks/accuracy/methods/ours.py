@@ -115,6 +115,10 @@ OURS = Method(
 #: The same without knowledge of the output turn, to show what memory trades.
 BY_MEMORY: Final = (*_memories(5.0, 10.0, 20.0, 40.0, 80.0), *OURS.grid)
 
+#: The longest memory of these that keeps both limits without knowledge of the output turn, for paths
+#: that have no room for it.
+IN_LANES: Final = BY_MEMORY[1]
+
 #: The Med7's strongest and its gentle tuning, each the same for all joints. Its ripple changes
 #: within some turns and the recording is a third of an output turn long: memories are short.
 KUKA_STRONG_TURNS: Final = 1.2

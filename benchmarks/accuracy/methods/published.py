@@ -33,15 +33,13 @@ def remove_as_published(log: Log, setting: Setting) -> Removal:
     return run_packaged("taghirad1999", log, setting)
 
 
-def remove_tuned(
-    log: Log, setting: Setting, *, process_over_measurement: float, minimum_speed_rad_s: float
-) -> Removal:
-    """Run the setting's orders, without 1/ratio, with a tuned Q/R.
+def tuned_config(
+    setting: Setting, *, process_over_measurement: float, minimum_speed_rad_s: float
+) -> strainwave.OscillatorFilterConfig:
+    """Configure the setting's orders, without 1/ratio, with a tuned Q/R.
 
     Parameters
     ----------
-    log : Log
-        The recording.
     setting : Setting
         Sample period and orders.
     process_over_measurement : float
@@ -51,17 +49,36 @@ def remove_tuned(
 
     Returns
     -------
-    Removal
-        Torque and ripple.
+    OscillatorFilterConfig
+        The configuration.
     """
-    config = strainwave.OscillatorFilterConfig(
+    return strainwave.OscillatorFilterConfig(
         orders=setting.orders,
         process_noise_variance_Nm2=process_over_measurement,
         measurement_noise_variance_Nm2=1.0,
         sample_period_s=setting.sample_period_s,
         minimum_speed_rad_s=minimum_speed_rad_s,
     )
-    result = strainwave.OscillatorFilter(config).process(
+
+
+def remove_tuned(log: Log, setting: Setting, **tuning: float) -> Removal:
+    """Run the published structure with a tuned Q/R.
+
+    Parameters
+    ----------
+    log : Log
+        The recording.
+    setting : Setting
+        Sample period and orders.
+    **tuning
+        As for `tuned_config`.
+
+    Returns
+    -------
+    Removal
+        Torque and ripple.
+    """
+    result = strainwave.OscillatorFilter(tuned_config(setting, **tuning)).process(
         log.torque_Nm,
         motor_speed_rad_s=difference_speed_rad_s(log),
         expected_torque_Nm=log.expected_torque_Nm,
