@@ -1,4 +1,4 @@
-"""`python -m benchmarks.golden`: makes the golden vectors; or holds a firmware's answers to them."""
+"""`python -m benchmarks.golden`: makes the golden vectors; or holds other answers to them."""
 
 from __future__ import annotations
 
@@ -11,8 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmarks.golden.chains import CHAINS, Answers
+from benchmarks.golden.inputs import samples_of
+from benchmarks.golden.on_paths import CHUNK_MEMORIES, path_deviations
 from benchmarks.golden.vectors import (
     GOLDEN,
+    PRECISIONS,
     answers_of,
     deviations,
     golden_text,
@@ -121,6 +124,30 @@ def is_good(golden: dict[str, Any], name: str, rows: NDArray[Any], arithmetic: s
     return good
 
 
+def print_paths() -> None:
+    """Print how far lanes and time chunks are from step by step, the furthest of all levels."""
+    golden = read_golden()
+    samples = samples_of(golden["definition"], golden["definition"]["samples"])
+    sys.stdout.write(
+        "| chain | precision | path | furthest from step by step, FS | from the golden torques, FS "
+        "| other statuses | chunks |\n|---|---|---|---|---|---|---|\n"
+    )
+    for name in CHUNK_MEMORIES:
+        for precision in PRECISIONS:
+            found = list(path_deviations(golden, samples, name, precision))
+            for path, part in (
+                ("lanes", [each for each in found if not each.chunks]),
+                ("time chunks", [each for each in found if each.chunks]),
+            ):
+                chunks = sorted({each.chunks for each in part if each.chunks})
+                sys.stdout.write(
+                    f"| {name} | {precision} | {path} | {max(each.furthest_FS for each in part):.1e} "
+                    f"| {max(each.from_golden_FS for each in part):.1e} "
+                    f"| {sum(each.other_statuses for each in part)} "
+                    f"| {', '.join(str(each) for each in chunks)} |\n"
+                )
+
+
 def main() -> int:
     """Make or compare.
 
@@ -134,7 +161,13 @@ def main() -> int:
     parser.add_argument(
         "--arithmetic", choices=TOLERANCES_FS, default="float", help="how the firmware computes"
     )
+    parser.add_argument(
+        "--paths", action="store_true", help="print how far lanes and chunks are from step by step"
+    )
     options = parser.parse_args()
+    if options.paths:
+        print_paths()
+        return 0
     if options.compare is not None:
         return compare(options.compare, options.arithmetic)
     GOLDEN.parent.mkdir(parents=True, exist_ok=True)

@@ -122,14 +122,28 @@ def _published(preset: str) -> Callable[[dict[str, Any], Samples, DTypeLike], An
     return run
 
 
-def _ripple_config(definition: dict[str, Any], **terms: bool) -> sw.RippleFilterConfig:
+def ripple_config(definition: dict[str, Any], **terms: bool) -> sw.RippleFilterConfig:
+    """Return the configuration of a ripple filter.
+
+    Parameters
+    ----------
+    definition : dict
+        As in ``golden.json``.
+    **terms
+        What each order depends on, as in `strainwave.RippleOrder`.
+
+    Returns
+    -------
+    RippleFilterConfig
+        The definition's orders.
+    """
     orders = [sw.RippleOrder(order, **terms) for order in definition["orders"]]
     return sw.RippleFilterConfig(orders=orders)
 
 
 def _ripple(**terms: bool) -> Callable[[dict[str, Any], Samples, DTypeLike], Answers]:
     def run(definition: dict[str, Any], samples: Samples, dtype: DTypeLike) -> Answers:
-        found = sw.RippleFilter(_ripple_config(definition, **terms), dtype=dtype).process(
+        found = sw.RippleFilter(ripple_config(definition, **terms), dtype=dtype).process(
             samples.ticks * TICK_S,
             motor_angle_rad(samples),
             numbers(samples.torque, TORQUE_STEP_NM, dtype),
@@ -173,7 +187,7 @@ def sensor_config(definition: dict[str, Any]) -> sw.TorqueSensorConfig:
         converter=sw.Converter(**told["converter"]),
         gains=sw.Gains(told["gains"]),
         calibration=sw.TorqueCalibration(**told["calibration"]),
-        filter=_ripple_config(definition, with_load=True, with_speed=True),
+        filter=ripple_config(definition, with_load=True, with_speed=True),
         monitor=sw.GaugeMonitorConfig(consistency=consistency, without=without, **told["monitor"]),
     )
 
