@@ -109,7 +109,7 @@ class GoldenFilter:
         Answers
             Of this one.
         """
-        kind = OscillatorBatch if self._is_published else RippleBatch
+        kind: Any = OscillatorBatch if self._is_published else RippleBatch
         columns = {
             name: [
                 values,

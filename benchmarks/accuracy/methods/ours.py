@@ -115,8 +115,8 @@ OURS = Method(
 #: The same without knowledge of the output turn, to show what memory trades.
 BY_MEMORY: Final = (*_memories(5.0, 10.0, 20.0, 40.0, 80.0), *OURS.grid)
 
-#: The longest memory of these that keeps both limits without knowledge of the output turn, for paths
-#: that have no room for it.
+#: Keeps both limits without knowledge of the output turn, for paths that have no room for it; its
+#: warm-up is short enough for half an hour to be cut into chunks.
 IN_LANES: Final = BY_MEMORY[1]
 
 #: The Med7's strongest and its gentle tuning, each the same for all joints. Its ripple changes
