@@ -91,12 +91,13 @@ def main() -> int:
         {"what": t.what, "measured": t.measured, "limit": t.limit, "met": t.met} for t in found
     ]
     options.out.mkdir(parents=True, exist_ok=True)
-    text = json.dumps(rounded(results), indent=1, allow_nan=False) + "\n"
+    plain = rounded(results)
+    text = json.dumps(plain, indent=1, allow_nan=False) + "\n"
     (options.out / "accuracy.json").write_text(text, encoding="utf-8")
     for name, content in (
         ("accuracy-error.svg", error_figure(results)),
         ("accuracy-med7.svg", kuka_figure(results)),
-        ("accuracy-paths.md", markdown_of(results)),
+        ("accuracy-paths.md", markdown_of(plain)),
     ):
         if content is not None:
             (options.out / name).write_text(content, encoding="utf-8")

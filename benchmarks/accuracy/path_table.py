@@ -22,8 +22,43 @@ HEADINGS: Final = (
     "other statuses",
     "chunks (repeated)",
 )
+REFUSED: Final = "refused"
 #: Columns of numbers begin here.
 FIRST_NUMBER: Final = 4
+
+
+def filters_of(scores: Sequence[Mapping[str, Any]]) -> list[str]:
+    """List the filters and their tunings, each once.
+
+    Parameters
+    ----------
+    scores : sequence of mapping
+        Fields of `benchmarks.accuracy.paths.PathScore`.
+
+    Returns
+    -------
+    list of str
+        In the order in which rows number them, from 1.
+    """
+    return list(dict.fromkeys(f"{score['method']}: {score['tuning']}" for score in scores))
+
+
+def legend(scores: Sequence[Mapping[str, Any]]) -> list[str]:
+    """Say what the rows' numbers stand for, and why a path refuses a filter.
+
+    Parameters
+    ----------
+    scores : sequence of mapping
+        Fields of `benchmarks.accuracy.paths.PathScore`.
+
+    Returns
+    -------
+    list of str
+        A line for each filter, and one for each reason.
+    """
+    reasons = dict.fromkeys(score["refused"] for score in scores if score["refused"])
+    numbered = [f"{number}. {each}" for number, each in enumerate(filters_of(scores), 1)]
+    return [*numbered, *(f"- {REFUSED}: {reason}" for reason in reasons)]
 
 
 def path_rows(scores: Sequence[Mapping[str, Any]]) -> list[tuple[str, ...]]:
@@ -39,16 +74,19 @@ def path_rows(scores: Sequence[Mapping[str, Any]]) -> list[tuple[str, ...]]:
     list of tuple of str
         A row for each, a cell for each of `HEADINGS`.
     """
+    filters = filters_of(scores)
     rows = []
     for score in scores:
+        number = 1 + filters.index(f"{score['method']}: {score['tuning']}")
         head = (
-            f"{score['method']}: {score['tuning']}",
+            f"{number} {score['method']}",
             score["joints"],
             score["precision"],
             score["path"],
         )
         if score["refused"]:
-            rows.append((*head, score["refused"], *[""] * (len(HEADINGS) - len(head) - 1)))
+            cells = [REFUSED] * len(SETS)
+            rows.append((*head, *cells, *[""] * (len(HEADINGS) - len(head) - len(cells))))
             continue
         errors = [f"{score['error_percent'][scenario]:.4f}" for scenario in SETS]
         if score["path"] == STEP_BY_STEP:
@@ -81,7 +119,8 @@ def path_table(results: Mapping[str, Any]) -> Table:
     rich.table.Table
         A row for each filter, precision and path.
     """
-    table = Table(title=TITLE, box=box.SIMPLE_HEAD, pad_edge=False)
+    caption = "\n".join(legend(results["paths"]))
+    table = Table(title=TITLE, caption=caption, box=box.SIMPLE_HEAD, pad_edge=False)
     for number, heading in enumerate(HEADINGS):
         table.add_column(heading, justify="right" if number >= FIRST_NUMBER else "left")
     for row in path_rows(results["paths"]):
@@ -107,6 +146,8 @@ def markdown_of(results: Mapping[str, Any]) -> str:
         "",
         "Written by `make bench-accuracy`; what it means: [the accuracy bench]"
         "(../../docs/design/accuracy-bench.md#every-path).",
+        "",
+        *legend(results["paths"]),
         "",
         f"| {' | '.join(HEADINGS)} |",
         "|" + "---|" * FIRST_NUMBER + "---:|" * (len(HEADINGS) - FIRST_NUMBER),

@@ -11,7 +11,7 @@ from benchmarks.accuracy.methods.on_paths import PATH_FILTERS, Outcome
 from benchmarks.accuracy.methods.ours import IN_LANES, OURS
 from benchmarks.accuracy.methods.published import PUBLISHED_TUNED
 from benchmarks.accuracy.motion import LEARNING, PHASES
-from benchmarks.accuracy.path_table import HEADINGS, markdown_of, path_rows
+from benchmarks.accuracy.path_table import HEADINGS, REFUSED, legend, markdown_of, path_rows
 from benchmarks.accuracy.paths import (
     SETS,
     STEP_BY_STEP,
@@ -130,7 +130,8 @@ def test_a_filter_that_a_path_refuses_is_said(monkeypatch):
     assert rows
     for row in rows:
         assert len(row) == len(HEADINGS)
-        assert "configs have more than 10 pairs" in row
+        assert REFUSED in row
+    assert legend([asdict(score) for score in refused])[-1].endswith("more than 10 pairs")
     found = path_targets([asdict(each) for each in (step_by_step, *refused)])
     missed = {target.what: target.measured for target in found if not target.met}
     assert missed == {"paths that refuse a filter": len(rows)}
@@ -139,9 +140,10 @@ def test_a_filter_that_a_path_refuses_is_said(monkeypatch):
 def test_the_table_has_a_row_for_each_path(compared):
     scores = [asdict(compared.step_by_step()) | {"chunks": ()}]
     text = markdown_of({"paths": [*scores, {**scores[0], "path": "time chunks", "chunks": (3, 4)}]})
-    rows = [line for line in text.splitlines() if line.startswith("| ours")]
+    rows = [line for line in text.splitlines() if line.startswith("| 1 ours")]
     assert len(rows) == 2
     assert "3, 4 (0)" in rows[1]
+    assert f"1. ours: memory_turns {IN_LANES['memory_turns']:g}" in text
     assert all(line.count("|") == len(HEADINGS) + 1 for line in rows)
 
 
