@@ -1,5 +1,5 @@
-// A golden chain's filter in lanes, on threads and in time chunks, held to step() and to the golden
-// answers.
+// A golden chain's filter in lanes, on threads, in time chunks and in series, held to step() and to
+// the golden answers.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -14,6 +14,7 @@
 #include "golden_logs.hpp"
 #include "strainwave/batch_long.hpp"
 #include "strainwave/batch_ripple_long.hpp"
+#include "strainwave/oscillator_series.hpp"
 
 namespace golden {
 
@@ -117,6 +118,24 @@ class ChainRun {
     strainwave::process_batch<Real, Max>(configs, states, channels, options);
     expect_golden(outputs.back(), tolerance);
     expect_counters(states.back());
+  }
+
+  /// In calls of so many samples; of the published filter alone.
+  void expect_in_series(std::size_t samples, Tolerance tolerance) const {
+    Outputs<Real> outputs(signals_.size());
+    State state = strainwave::initial_state(config_);
+    for (std::size_t start = 0; start < signals_.size(); start += samples) {
+      strainwave::steps(config_, state,
+                        {.sample_count = std::min(samples, signals_.size() - start),
+                         .measured_torque_Nm = signals_.measured_Nm.data() + start,
+                         .motor_speed_rad_s = signals_.speed_rad_s.data() + start,
+                         .expected_torque_Nm = signals_.expected_Nm.data() + start,
+                         .torque_Nm = outputs.torque_Nm.data() + start,
+                         .ripple_Nm = outputs.ripple_Nm.data() + start,
+                         .status = outputs.status.data() + start});
+    }
+    expect_golden(outputs, tolerance);
+    expect_counters(state);
   }
 
   /// In time chunks; returns what was reported.

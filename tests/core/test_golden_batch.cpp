@@ -1,5 +1,5 @@
-// The golden vectors through lanes, threads and time chunks, at every vector level: the golden
-// answers to rounding, and the same statuses.
+// The golden vectors through lanes, threads and time chunks, at every vector level, and through
+// series: the golden answers to rounding, and the same statuses.
 #include <gtest/gtest.h>
 
 #include <cstddef>
@@ -125,7 +125,25 @@ TYPED_TEST(GoldenBatch, FilterBehindGaugesInLanes) {
   expect_in_lanes(chain, this->of({1e-8, 1e-5}, {1e-16, 1e-9}));
 }
 
-// Most warm-ups are shorter than the usual 16 memories, because the golden log is short.
+/// All in one call; and in pieces of some blocks and a rest.
+template <class Chain>
+void expect_in_series(const Chain& chain, Tolerance tolerance) {
+#if !defined(STRAINWAVE_NUMBER_ROWS)
+  tolerance = {0.0, 0.0};  // step() after step()
+#endif
+  chain.expect_in_series(golden::sample_count, tolerance);
+  chain.expect_in_series(211, tolerance);
+}
+
+TYPED_TEST(GoldenBatch, Published4InSeries) {
+  expect_in_series(published_4<TypeParam>(), this->of({1e-8, 1e-5}, {1e-16, 3e-14}));
+}
+
+TYPED_TEST(GoldenBatch, Published6InSeries) {
+  expect_in_series(published_6<TypeParam>(), this->of({1e-8, 5e-5}, {1e-16, 1e-13}));
+}
+
+// Some warm-ups are shorter than the usual 16 memories, because the golden log is short.
 
 TYPED_TEST(GoldenBatch, Published4InChunks) {
   expect_in_chunks(published_4<TypeParam>(), 16.0, 16);
