@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import sys
+
 import numpy as np
 import pytest
 
 from benchmarks.golden import vectors
+from benchmarks.golden.__main__ import main
 from benchmarks.golden.inputs import samples_of
 from benchmarks.golden.on_paths import CHUNK_MEMORIES, GoldenFilter, path_deviations
 from strainwave._core import best_vector_level
@@ -61,3 +64,18 @@ def test_threads_and_neighbours_change_no_bit(golden, samples):
     for threads in (1, 2):
         beside = filtered.in_lanes(best_vector_level(), threads, 19)
         np.testing.assert_array_equal(beside.records(), alone.records())
+
+
+def test_the_command_prints_a_row_for_each_chain_precision_and_kind(monkeypatch, capsys):
+    monkeypatch.setattr("benchmarks.golden.__main__.CHUNK_MEMORIES", {"published_4": 16.0})
+    monkeypatch.setattr(sys, "argv", ["golden", "--paths"])
+    assert main() == 0
+    head, _, *rows = capsys.readouterr().out.splitlines()
+    assert len(rows) == 2 * len(vectors.PRECISIONS)
+    for row in rows:
+        assert row.count("|") == head.count("|")
+        cells = [cell.strip() for cell in row.split("|")]
+        assert cells[1] == "published_4"
+        assert 0 < float(cells[5]) <= float(cells[4]) < 1e-4
+        assert cells[6] == "0"
+        assert bool(cells[7]) == (cells[3] == "time chunks")
