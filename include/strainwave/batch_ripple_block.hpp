@@ -365,6 +365,11 @@ inline void filter_block(const RippleKind& kind, VectorLevel level,
     }
   }
   if constexpr (MaxPairs > 7) {
+    if (pairs == 10) {
+      return run_ripple_block<Real, 10>(kind, level, block);
+    }
+  }
+  if constexpr (MaxPairs > 10) {
     if (pairs == most_lane_pairs) {
       return run_ripple_block<Real, most_lane_pairs>(kind, level, block);
     }

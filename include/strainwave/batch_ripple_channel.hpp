@@ -60,7 +60,8 @@ template <class Real, std::size_t MaxPairs>
   if (pairs > most_lane_pairs) {
     return kind;
   }
-  for (const std::size_t capacity : {std::size_t{3}, std::size_t{5}, std::size_t{7}}) {
+  for (const std::size_t capacity :
+       {std::size_t{3}, std::size_t{5}, std::size_t{7}, std::size_t{10}}) {
     kind.pairs = kind.pairs == 0 && pairs <= capacity ? capacity : kind.pairs;
   }
   kind.pairs = kind.pairs == 0 ? most_lane_pairs : kind.pairs;

@@ -116,7 +116,7 @@ enum class RippleOutput : std::uint8_t { torque, ripple, all_removed, state, inn
 inline constexpr std::size_t ripple_outputs = 6;
 
 /// Most pairs of a filter that runs on lanes.
-inline constexpr std::size_t most_lane_pairs = 10;
+inline constexpr std::size_t most_lane_pairs = 11;
 
 /// Samples of a block, [time][block_width]; null outputs are not wanted.
 template <class Real>

@@ -68,7 +68,8 @@ Config<Real> joint(std::size_t number) {
     case 4:
       for (std::size_t a = 0; a < 3; ++a) {
         config.orders[a].with_load = config.orders[a].with_speed = true;
-        config.orders[a].with_direction = true;
+        // Eleven pairs, the most that lanes have room for, or twelve.
+        config.orders[a].with_direction = a < 2 || number % 2 == 0;
       }
       break;
     default:
