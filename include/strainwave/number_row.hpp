@@ -213,9 +213,13 @@ template <class Row, class Real>
 
 #else
 
-/// Not there: what is written for it is not compiled.
+/// Not there: what is written for them is not compiled.
 template <class Real, std::size_t Count>
 struct NumberRow;
+template <class Real, std::size_t Count>
+using WideRow = NumberRow<Real, Count>;
+template <class Row, class Real>
+Real product_sum_by_fours(const Real* a, const Real* b);
 
 #endif
 
