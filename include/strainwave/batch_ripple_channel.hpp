@@ -41,6 +41,7 @@ struct RippleChannel {
     return sample;
   }
 };
+
 namespace detail {
 
 /// What kernel a filter needs: lanes of a block have to be alike in this.
