@@ -86,7 +86,7 @@ STRAINWAVE_INLINE Lanes<double> turns_of(Lanes<double> angle_rad) {
 template <class Real>
 STRAINWAVE_INLINE void store_digits(Lanes<double> digits, std::size_t count, Real* to) {
   using Wide = Lanes<double>;
-  using Narrow [[gnu::vector_size(Wide::count * sizeof(Real))]] = typename LaneVectors<Real>::Whole;
+  using Narrow [[gnu::vector_size(Wide::count * sizeof(Real))]] = LaneVectors<Real>::Whole;
   using Low [[gnu::vector_size(Wide::count * sizeof(std::int32_t))]] = std::int32_t;
   const auto low =
       __builtin_convertvector(reinterpret_cast<LaneVectors<double>::Wholes>(digits.v), Low);

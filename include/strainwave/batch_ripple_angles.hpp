@@ -18,6 +18,7 @@ using ConvertAngles = void (*)(const double* angle_rad, std::size_t count, Real*
 
 /// Angles of a block, converted channel by channel and then put side by side.
 template <class Real, std::size_t Pairs>
+// NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init): filled tile by tile
 class RippleAngles {
  public:
   static constexpr std::size_t width = block_width<Real>;

@@ -36,6 +36,7 @@ struct RippleFrames {
 
   /// Moves an order of those lanes of the given ones whose factors are beyond a share of the widest
   /// offset; returns which have moved.
+  // NOLINTNEXTLINE(modernize-use-nodiscard): for who wants to know
   STRAINWAVE_INLINE Mask follow(std::size_t a, Real share, Mask lanes) const {
     const RippleOrderLayout& order = memory.orders[a];
     L steps[3];

@@ -383,6 +383,7 @@ void expect_cycles(VectorLevel level, strainwave::Order order) {
                                                 static_cast<double>(order.denominator),
                                                 1.0 / order.denominator, cycles.data()};
   const auto convert = strainwave::detail::ripple_kernel<Real, 3>(level).convert_angles;
+  ASSERT_NE(convert, nullptr);
   convert(angles.data(), angles.size(), turns.data(), fraction.data(), &wanted, 1);
   using Whole = strainwave::RippleLanes<Real, 3>::Whole;
   for (std::size_t i = 0; i < angles.size(); ++i) {
