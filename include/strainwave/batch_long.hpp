@@ -86,18 +86,9 @@ template <class Real>
           .status = from(channel.status)};
 }
 
-/// Samples before the first whole line of the cache.
-template <class Real>
-[[nodiscard]] inline std::size_t samples_to_a_line(const Real* samples) {
-  constexpr std::size_t line = 64;
-  // NOLINTNEXTLINE(cppcoreguidelines-pro-type-reinterpret-cast): an address as a number
-  const std::size_t past = reinterpret_cast<std::uintptr_t>(samples) % line;
-  return (line - past) % line / sizeof(Real);
-}
-
-/// Chunks of about equal length, which begin with a line of the cache: a register read across two
-/// lines is read twice.  Where a warm-up would take longer than a chunk there is no
-/// boundary: nothing would be won.
+/// Chunks of about equal length, the same wherever the arrays lie: what comes out shall not depend
+/// on an address.  Where a warm-up would take longer than a chunk there is no boundary: nothing
+/// would be won.
 template <class Real, std::size_t MaxOrders>
 [[nodiscard]] inline std::vector<TimeChunk<OscillatorFilterState<Real, MaxOrders>>> chunks_of(
     const OscillatorFilterConfig<Real, MaxOrders>& config, const OscillatorChannel<Real>& channel,
@@ -105,16 +96,14 @@ template <class Real, std::size_t MaxOrders>
   // Whole lines of the cache, and an odd number of them, so that chunks do not meet in one set.
   const std::size_t line = block_width<Real>;
   const std::size_t length = ((channel.sample_count / (count * line) + 1U) | 1U) * line;
-  const std::size_t first = length + samples_to_a_line(channel.measured_torque_Nm);
-  std::vector<std::size_t> warm_ups(
-      channel.sample_count > first ? (channel.sample_count - first - 1) / length + 1 : 0);
+  std::vector<std::size_t> warm_ups((channel.sample_count - 1) / length);
   for_each_part(warm_ups.size(), options.batch.thread_count, [&](std::size_t i) {
-    warm_ups[i] = warm_up_before(config, channel, first + i * length, options.warm_up_memories);
+    warm_ups[i] = warm_up_before(config, channel, (i + 1) * length, options.warm_up_memories);
   });
   std::vector<TimeChunk<OscillatorFilterState<Real, MaxOrders>>> chunks(1);
   for (std::size_t i = 0; i < warm_ups.size(); ++i) {
     if (warm_ups[i] <= length) {
-      const std::size_t start = first + i * length;
+      const std::size_t start = (i + 1) * length;
       chunks.back().count = start - chunks.back().start;
       chunks.emplace_back();
       chunks.back().start = start;

@@ -350,7 +350,8 @@ inline void run_ripple_block(const RippleKind& kind, VectorLevel level,
 template <class Real, std::size_t MaxPairs>
 inline void filter_block(const RippleKind& kind, VectorLevel level,
                          const RippleBlock<Real, MaxPairs>& block) {
-  const std::size_t pairs = is_available(level) ? kind.pairs : 0;
+  const bool has_lanes = level != VectorLevel::one_by_one && is_available(level);
+  const std::size_t pairs = has_lanes ? kind.pairs : 0;
   if (pairs == 3) {
     return run_ripple_block<Real, 3>(kind, level, block);
   }

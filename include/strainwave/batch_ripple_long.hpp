@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <iterator>
 #include <vector>
 
 #include "strainwave/batch_ripple.hpp"
@@ -152,7 +151,9 @@ struct RippleLog {
   }
   static void clear_results(Channel& channel) {
     channel.status = nullptr;
-    std::fill(std::begin(channel.outputs), std::end(channel.outputs), nullptr);
+    for (Real*& output : channel.outputs) {
+      output = nullptr;
+    }
   }
   static void filter_block(VectorLevel level, const Block& block) {
     detail::filter_block(kind_of(*block.configs[0]), level, block);
