@@ -18,9 +18,10 @@ from benchmarks.speed.programs import Programs
 from benchmarks.speed.rounds import Effort, ratio, timed
 from benchmarks.speed.worker_process import NotAvailableError, Worker
 
-#: Samples of one channel in a run, and of each of many channels.
+#: Samples of one channel in a run, and of each of many channels: so many that to start a thread
+#: counts for little.
 _SINGLE_SAMPLES: Final = 50_000
-_BATCH_SAMPLES: Final = 20_000
+_BATCH_SAMPLES: Final = 100_000
 #: Of products and sums in a run, where these are measured.
 _OPERATIONS: Final = 10_000_000
 

@@ -149,11 +149,28 @@ class RippleBlockRun {
              .status = has_status_ ? status_.values : nullptr,
              .first_sample = at_,
              .sample_count = count};
+    look_ahead();
     angles_.gather_into(tile_, kernel_.convert_angles, block_, from_, at_, count);
     gather_rest(count);
     for (std::size_t i = 0; i < ripple_outputs; ++i) {
       tile_.outputs[i] = has_output_[i] ? outputs_[i].values : nullptr;
     }
+  }
+
+  void look_ahead() {
+    for (std::size_t lane = 0; lane < width; ++lane) {
+      const RippleChannel<Real>& channel = block_.channels[from_[lane]];
+      if (channel.sample_count < at_ + 3 * tile_samples) {
+        return;
+      }
+      ahead_.torques_Nm[lane] = channel.measured_torque_Nm;
+      ahead_.angles_rad[lane] = channel.motor_angle_rad;
+      ahead_.results[lane] = channel.measured_torque_Nm;
+      for (Real* const output : channel.outputs) {
+        ahead_.results[lane] = output != nullptr ? output : ahead_.results[lane];
+      }
+    }
+    tile_.ahead = &ahead_;
   }
 
   /// Signals that some channels of a block may have and others not.
@@ -323,6 +340,7 @@ class RippleBlockRun {
   const Block& block_;  // NOLINT(cppcoreguidelines-avoid-const-or-ref-data-members)
   RippleKernel<Real, Pairs> kernel_;
   RippleTile<Real> tile_ = {};
+  RippleAhead<Real> ahead_ = {};
   std::size_t at_ = 0;  ///< first sample of the tile
   std::size_t from_[width] = {};
   bool has_expected_ = false;

@@ -588,7 +588,11 @@ STRAINWAVE_KERNEL void filter_ripple_tile(RippleLanes<Real, Pairs>& memory,
                                           const RippleTile<Real>& tile, const RippleAlone& alone) {
   using Group = RippleGroup<Real, Pairs>;
   for (std::size_t lane = 0; lane < block_width<Real>; lane += Lanes<Real>::count) {
+    const RippleAhead<Real>* const ahead = lane == 0 ? tile.ahead : nullptr;
     for (std::size_t k = 0; k < tile.sample_count; ++k) {
+      if (ahead != nullptr) {
+        ahead->ask(tile.first_sample + 2 * tile_samples, k);
+      }
       Group(memory, tile, alone, lane, k).filter();
     }
   }

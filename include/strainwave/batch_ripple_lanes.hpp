@@ -118,6 +118,32 @@ inline constexpr std::size_t ripple_outputs = 6;
 /// Most pairs of a filter that runs on lanes.
 inline constexpr std::size_t most_lane_pairs = 11;
 
+/// A block's arrays two tiles ahead; as Ahead of batch_layout.hpp, with angles in double.
+template <class Real>
+struct RippleAhead {
+  static constexpr std::size_t width = block_width<Real>;
+  static constexpr std::size_t line = 64 / sizeof(Real);
+  static constexpr std::size_t angle_line = 64 / sizeof(double);
+
+  const Real* torques_Nm[width] = {};
+  const Real* results[width] = {};
+  const double* angles_rad[width] = {};
+
+  /// Asks for some lines of the tile that begins at `at`, for each sample of the tile before it.
+  [[gnu::always_inline]] void ask([[maybe_unused]] std::size_t at,
+                                  [[maybe_unused]] std::size_t sample) const {
+#if STRAINWAVE_HAS_LANES
+    const std::size_t lane = sample % width;
+    const std::size_t from = at + sample / width * line;
+    __builtin_prefetch(torques_Nm[lane] + from);
+    __builtin_prefetch(results[lane] + from);
+    for (std::size_t i = 0; i < line; i += angle_line) {
+      __builtin_prefetch(angles_rad[lane] + from + i);
+    }
+#endif
+  }
+};
+
 /// Samples of a block, [time][block_width]; null outputs are not wanted.
 template <class Real>
 struct RippleTile {
@@ -134,6 +160,7 @@ struct RippleTile {
   Real* status = nullptr;        ///< as numbers, which hold them exactly
   std::size_t first_sample = 0;  ///< since the call began
   std::size_t sample_count = 0;
+  const RippleAhead<Real>* ahead = nullptr;  ///< null: nothing is that far ahead
 };
 
 /// Where an order's cycles go that depend on whole turns as well.
