@@ -166,7 +166,7 @@ class RippleBlockRun {
       ahead_.torques_Nm[lane] = channel.measured_torque_Nm;
       ahead_.angles_rad[lane] = channel.motor_angle_rad;
       ahead_.results[lane] = channel.measured_torque_Nm;
-      for (Real* const output : channel.outputs) {
+      for (const Real* const output : channel.outputs) {
         ahead_.results[lane] = output != nullptr ? output : ahead_.results[lane];
       }
     }
